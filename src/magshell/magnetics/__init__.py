@@ -1,0 +1,19 @@
+"""Magnetics: remanence, external field, and the laws that couple them, one per file."""
+
+from magshell.magnetics import remanence
+from magshell.magnetics.deformation_gradient_energy import DeformationGradientEnergy
+from magshell.magnetics.field import UniformField
+from magshell.magnetics.law import Coupling, is_conservative, laws
+from magshell.magnetics.micro_rotation_energy import MicroRotationEnergy
+from magshell.magnetics.micropolar_couple import MicropolarCouple
+
+__all__ = [
+    "Coupling",
+    "DeformationGradientEnergy",
+    "MicroRotationEnergy",
+    "MicropolarCouple",
+    "UniformField",
+    "is_conservative",
+    "laws",
+    "remanence",
+]

@@ -1,0 +1,48 @@
+r"""Conservative coupling through the deformation gradient (Zhao, Kim, Cheng, Zhao: JMPS 124, 2019).
+
+The remanence is carried along and stretched by the material, m = F B̃:
+
+    W = -(1/mu0) m · B,      f = -(1/mu0) B,      c = 0.
+
+W is linear in m: all its second variation comes from the kinematics of m, and K_m = K_ω = 0.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from magshell.magnetics.law import coupling_law
+from magshell.typing import FloatArray
+
+
+def _energy(
+    coupling: DeformationGradientEnergy, m: FloatArray, n: FloatArray, B: FloatArray
+) -> float:
+    return -(m[0] * B[0] + m[1] * B[1] + m[2] * B[2]) / coupling.vacuum_permeability
+
+
+def _forces(
+    coupling: DeformationGradientEnergy,
+    m: FloatArray,
+    n: FloatArray,
+    B: FloatArray,
+    f: FloatArray,
+    c: FloatArray,
+    K_m: FloatArray,
+    K_ω: FloatArray,
+) -> None:
+    for i in range(3):
+        f[i] = -B[i] / coupling.vacuum_permeability
+        c[i] = 0.0
+        for l in range(3):
+            K_m[i, l] = 0.0
+            K_ω[i, l] = 0.0
+
+
+@coupling_law(forces=_forces, energy=_energy)
+class DeformationGradientEnergy(NamedTuple):
+    """Energy -(1/mu0) (F B̃) · B of Zhao et al.: the remanence is carried along and stretched by the material."""
+
+    vacuum_permeability: float = 4e-7 * np.pi

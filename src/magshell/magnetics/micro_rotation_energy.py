@@ -1,0 +1,54 @@
+r"""Conservative coupling through the micro-rotation.
+
+The remanence turns with the micro-rotation and does not stretch, n = R̃ B̃:
+
+    W = -(1/mu0) n · B.
+
+With exp(δω) n = n + δω × n + δω × (δω × n)/2 its part of the residual and its symmetric tangent are
+
+    c = -(1/mu0) n × B,      K_ω = -(1/mu0) [ (n Bᵀ + B nᵀ)/2 - (n · B) I ],      f = 0,  K_m = 0.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from magshell.magnetics.law import coupling_law
+from magshell.typing import FloatArray
+
+
+def _energy(
+    coupling: MicroRotationEnergy, m: FloatArray, n: FloatArray, B: FloatArray
+) -> float:
+    return -(n[0] * B[0] + n[1] * B[1] + n[2] * B[2]) / coupling.vacuum_permeability
+
+
+def _forces(
+    coupling: MicroRotationEnergy,
+    m: FloatArray,
+    n: FloatArray,
+    B: FloatArray,
+    f: FloatArray,
+    c: FloatArray,
+    K_m: FloatArray,
+    K_ω: FloatArray,
+) -> None:
+    mu0 = coupling.vacuum_permeability
+    n_dot_B = n[0] * B[0] + n[1] * B[1] + n[2] * B[2]
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        f[i] = 0.0
+        c[i] = -(n[j] * B[k] - n[k] * B[j]) / mu0
+        for l in range(3):
+            K_m[i, l] = 0.0
+            K_ω[i, l] = -0.5 * (n[i] * B[l] + B[i] * n[l]) / mu0
+        K_ω[i, i] += n_dot_B / mu0
+
+
+@coupling_law(forces=_forces, energy=_energy)
+class MicroRotationEnergy(NamedTuple):
+    """Energy -(1/mu0) (R̃ B̃) · B: the remanence turns with the micro-rotation and does not stretch."""
+
+    vacuum_permeability: float = 4e-7 * np.pi

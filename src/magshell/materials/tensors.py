@@ -1,0 +1,24 @@
+"""Tensor operations that material laws share, compiled into the kernels."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from magshell.compiled import inline
+from magshell.typing import FloatArray
+
+
+@inline
+def inverse_transpose(U: FloatArray) -> tuple[FloatArray, float]:
+    """U⁻ᵀ and det U of a 3 × 3 array, from its cofactors."""
+    V = np.empty((3, 3), dtype=U.dtype)
+    for i in range(3):
+        a, b = (i + 1) % 3, (i + 2) % 3
+        for j in range(3):
+            c, d = (j + 1) % 3, (j + 2) % 3
+            V[i, j] = U[a, c] * U[b, d] - U[a, d] * U[b, c]
+    J = U[0, 0] * V[0, 0] + U[0, 1] * V[0, 1] + U[0, 2] * V[0, 2]
+    for i in range(3):
+        for j in range(3):
+            V[i, j] /= J
+    return V, J
