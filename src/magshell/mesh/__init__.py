@@ -1,0 +1,9 @@
+"""Meshes of 8-node quadrilaterals with named groups: made by a generator, or from arrays."""
+
+from __future__ import annotations
+
+from magshell.mesh.generators import cylinder, rectangle, sphere_patch
+from magshell.mesh.mesh import Mesh
+from magshell.mesh.multiblock import blocks
+
+__all__ = ["Mesh", "blocks", "cylinder", "rectangle", "sphere_patch"]

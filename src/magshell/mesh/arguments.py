@@ -1,0 +1,83 @@
+"""Checks of what a generator is given: each names the argument, its value and what is allowed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from numbers import Integral, Real
+
+import numpy as np
+
+from magshell.errors import InputError
+from magshell.typing import FloatArray
+
+WIDEST = 120.0
+"""Degrees an element may span: a quarter turn is usual, and a turn of two elements would fold onto itself."""
+
+
+def positive(generator: str, name: str, value: float) -> float:
+    """A length in m that is positive and finite."""
+    if isinstance(value, Real) and math.isfinite(value) and value > 0:
+        return float(value)
+    raise InputError(f"{generator}: {name} = {value!r} is not allowed; it must be a positive number, in m.")
+
+
+def divisions(generator: str, value: Sequence[int], name: str = "elements") -> tuple[int, int]:
+    """Two numbers of elements, each at least 1."""
+    numbers = tuple(value) if isinstance(value, Iterable) else ()
+    if len(numbers) == 2 and all(
+        isinstance(n, Integral) and not isinstance(n, bool) and n >= 1 for n in numbers
+    ):
+        return int(numbers[0]), int(numbers[1])
+    raise InputError(
+        f"{generator}: {name} = {value!r} is not allowed; it must be two whole numbers, each at least 1."
+    )
+
+
+def angles(generator: str, name: str, value: Sequence[float], elements: int) -> tuple[float, float]:
+    """Start and stop in degrees, rising, at most 360 apart and at most 120 to an element."""
+    start, stop = number_pair(generator, name, value)
+    if start >= stop:
+        raise InputError(f"{generator}: {name} = {value!r} is not allowed; the start must be below the stop.")
+    if stop - start > 360 and not whole_turn(start, stop):
+        raise InputError(
+            f"{generator}: {name} = {value!r} spans {stop - start:g} degrees; at most 360 are allowed."
+        )
+    if stop - start > WIDEST * elements:
+        raise InputError(
+            f"{generator}: elements = {elements} over {name} = {value!r} makes elements of "
+            f"{(stop - start) / elements:g} degrees; at most {WIDEST:g} are allowed, so give at least "
+            f"{math.ceil((stop - start) / WIDEST)} elements."
+        )
+    return start, stop
+
+
+def whole_turn(start: float, stop: float) -> bool:
+    """Whether the angles span 360 degrees but for rounding."""
+    return math.isclose(stop - start, 360.0, rel_tol=1e-12)
+
+
+def number_pair(generator: str, name: str, value: Sequence[float]) -> tuple[float, float]:
+    """Two finite numbers, in degrees."""
+    try:
+        start, stop = (float(v) for v in value)
+    except (TypeError, ValueError):
+        start = stop = math.nan
+    if not (math.isfinite(start) and math.isfinite(stop)):
+        raise InputError(
+            f"{generator}: {name} = {value!r} is not allowed; it must be two numbers, in degrees."
+        )
+    return start, stop
+
+
+def direction(generator: str, name: str, value: Sequence[float]) -> FloatArray:
+    """Unit vector (3,)."""
+    try:
+        vector = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        vector = np.zeros(0)
+    if vector.shape != (3,) or not np.isfinite(vector).all() or not vector.any():
+        raise InputError(
+            f"{generator}: {name} = {value!r} is not allowed; it must be three numbers, not all zero."
+        )
+    return vector / np.linalg.norm(vector)

@@ -1,0 +1,50 @@
+"""Which edges the elements have, and who shares them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from magshell.typing import IntArray
+
+SIDES = np.array([[0, 1, 4], [1, 2, 5], [2, 3, 6], [3, 0, 7]])
+"""Local node numbers (end, end, middle) of the four sides, walked counter-clockwise."""
+
+
+class Edges(NamedTuple):
+    """Sides of the elements and the edges they lie on.
+
+    Side number `4 e + s` is side `s` of element `e`. Two sides lie on one edge when they have the same two
+    ends.
+    """
+
+    sides: IntArray
+    """(4 elements, 3): end, end, middle, in the sense in which the element walks its side."""
+    edge_of_side: IntArray
+    """(4 elements,): edge number."""
+    first_side: IntArray
+    """(edges,): the lowest side number on the edge."""
+    sharing: IntArray
+    """(edges,): number of sides on the edge."""
+
+    @property
+    def boundary(self) -> IntArray:
+        """Side numbers of the edges that only one element has."""
+        return np.sort(self.first_side[self.sharing == 1])
+
+
+def find_edges(elements: IntArray) -> Edges:
+    """Edges of `elements` (n, 8)."""
+    sides = elements[:, SIDES].reshape(-1, 3)
+    _, first, edge_of_side, sharing = np.unique(
+        edge_keys(sides, int(elements.max()) + 1), return_index=True, return_inverse=True, return_counts=True
+    )
+    return Edges(sides, edge_of_side, first, sharing)
+
+
+def edge_keys(edges: IntArray, node_count: int) -> IntArray:
+    """One whole number per edge (k, 3), equal for edges with the same two ends whatever their sense."""
+    ends = np.sort(edges[:, :2], axis=1)
+    keys: IntArray = ends[:, 0] * node_count + ends[:, 1]
+    return keys

@@ -1,0 +1,257 @@
+"""The mesh: nodes, 8-node quadrilaterals, named groups of them, and how to find a place on it."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from magshell.errors import InputError, suggest
+from magshell.mesh.checks import (
+    check_connectivity,
+    check_groups,
+    check_name,
+    check_numbers,
+    float_rows,
+    integer_rows,
+    locked,
+)
+from magshell.mesh.edges import Edges, find_edges
+from magshell.mesh.geometry import COINCIDENT, check_shapes
+from magshell.mesh.unmatched import check_unmatched
+from magshell.mesh.wording import place
+from magshell.typing import FloatArray, IntArray
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Mesh:
+    """A surface of 8-node quadrilaterals in space, checked when it is made.
+
+    Parameters
+    ----------
+    points : (nodes, 3)
+        Positions, m.
+    elements : (elements, 8)
+        Node numbers: four corners, counter-clockwise seen against the director D, then the four mid-side
+        nodes, starting between corners 1 and 2 (the order of VTK_QUADRATIC_QUAD).
+    element_groups : mapping of name to (k,)
+        Element numbers.
+    edge_groups : mapping of name to (k, 3)
+        Edges: the node numbers of one end, the other end and the middle.
+    node_groups : mapping of name to (k,)
+        Node numbers.
+
+    Nodes and elements are counted from 0, here and in messages; the corners of an element from 1. A name
+    belongs to one group only, whatever its kind. The arrays are copied and read-only.
+
+    Raises
+    ------
+    MeshError
+        Wrong shapes or numbers, unused nodes, an element twice, more than two elements on an edge, neighbours
+        with opposite normals, misshapen elements, elements that touch without being joined, a group that
+        makes no sense. The message names the elements.
+    """
+
+    points: FloatArray
+    elements: IntArray
+    element_groups: Mapping[str, IntArray] = field(default_factory=dict)
+    edge_groups: Mapping[str, IntArray] = field(default_factory=dict)
+    node_groups: Mapping[str, IntArray] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "points", float_rows(self.points, 3, "Points"))
+        object.__setattr__(self, "elements", integer_rows(self.elements, 8, "Elements"))
+        check_numbers(self.points, self.elements)
+        check_connectivity(self.points, self.elements, self._edges)
+        check_shapes(self.points, self.elements, self.size)
+        check_unmatched(self.points, self.elements, self._edges, self.size)
+        self._set_groups(
+            *check_groups(
+                self.element_groups,
+                self.edge_groups,
+                self.node_groups,
+                self.points,
+                self.elements,
+                self._edges,
+            )
+        )
+
+    def __repr__(self) -> str:
+        names = ", ".join(self.groups) or "none"
+        return f"Mesh({len(self.elements)} elements, {len(self.points)} nodes, groups: {names})"
+
+    @cached_property
+    def _edges(self) -> Edges:
+        return find_edges(self.elements)
+
+    def _set_groups(
+        self, elements: Mapping[str, IntArray], edges: Mapping[str, IntArray], nodes: Mapping[str, IntArray]
+    ) -> None:
+        object.__setattr__(self, "element_groups", dict(elements))
+        object.__setattr__(self, "edge_groups", dict(edges))
+        object.__setattr__(self, "node_groups", dict(nodes))
+
+    @property
+    def _kinds(self) -> dict[str, str]:
+        kinds = (("element", self.element_groups), ("edge", self.edge_groups), ("node", self.node_groups))
+        return {name: kind for kind, names in kinds for name in names}
+
+    @property
+    def groups(self) -> list[str]:
+        """Names of all groups: of elements, then edges, then nodes."""
+        return list(self._kinds)
+
+    @cached_property
+    def corner_nodes(self) -> IntArray:
+        """Sorted numbers of the nodes that are corners; the rest are mid-side nodes."""
+        return locked(np.unique(self.elements[:, :4]))
+
+    @cached_property
+    def boundary_edges(self) -> IntArray:
+        """Edges (k, 3) that only one element has: end, end, middle, walked with the surface on the left."""
+        return locked(self._edges.sides[self._edges.boundary])
+
+    @cached_property
+    def size(self) -> float:
+        """Diagonal of the bounding box, m."""
+        return float(np.linalg.norm(np.ptp(self.points, axis=0)))
+
+    @cached_property
+    def parts(self) -> list[IntArray]:
+        """Element numbers of each connected part, by first element; one common node connects."""
+        from scipy.sparse import coo_matrix
+        from scipy.sparse.csgraph import connected_components
+
+        count, nodes = self.elements.shape[0], len(self.points)
+        rows = np.repeat(np.arange(count), 8)
+        graph = coo_matrix(
+            (np.ones(8 * count), (rows, count + self.elements.ravel())), shape=(count + nodes,) * 2
+        )
+        _, labels = connected_components(graph, directed=False)
+        order = np.argsort(labels[:count], kind="stable")
+        starts = np.flatnonzero(np.diff(labels[order])) + 1
+        return sorted((locked(part) for part in np.split(order, starts)), key=lambda part: int(part[0]))
+
+    def elements_of(self, name: str) -> IntArray:
+        """Element numbers of an element group.
+
+        Raises
+        ------
+        InputError
+            There is no element group of that name; the message has the nearest one.
+        """
+        if name in self.element_groups:
+            return self.element_groups[name]
+        kind = self._kinds.get(name)
+        fault = (
+            f"'{name}' is a group of {kind}s, not of elements"
+            if kind
+            else f"There is no element group '{name}'"
+        )
+        raise InputError(f"{fault}. {suggest(name, self.element_groups)}")
+
+    def nodes_of(self, name: str) -> IntArray:
+        """Sorted node numbers of an element, edge or node group, mid-side nodes included.
+
+        Raises
+        ------
+        InputError
+            There is no group of that name; the message has the nearest one.
+        """
+        kind = self._kinds.get(name)
+        if kind is None:
+            raise InputError(f"There is no group '{name}' in the mesh. {suggest(name, self.groups)}")
+        if kind == "element":
+            return np.unique(self.elements[self.element_groups[name]])
+        return np.unique(self.edge_groups[name] if kind == "edge" else self.node_groups[name])
+
+    def node_at(self, point: Sequence[float] | FloatArray) -> int:
+        """Number of the node at a position (3,), m, to within 1e-6 of the size of the mesh.
+
+        Raises
+        ------
+        InputError
+            There is none; the message has the nearest node and its distance.
+        """
+        target = np.asarray(point, dtype=np.float64)
+        if target.shape != (3,) or not np.isfinite(target).all():
+            raise InputError(f"A position has three finite coordinates in m, not {point!r}.")
+        distance = np.linalg.norm(self.points - target, axis=1)
+        node = int(np.argmin(distance))
+        if distance[node] > COINCIDENT * self.size:
+            raise InputError(
+                f"There is no node at {place(target)}. The nearest is node {node} at "
+                f"{place(self.points[node])}, {distance[node]:.3g} m away."
+            )
+        return node
+
+    def select_edges(
+        self, name: str, x1: float | None = None, x2: float | None = None, x3: float | None = None
+    ) -> Mesh:
+        """The same mesh and one more edge group: the boundary edges whose nodes have these coordinates.
+
+        Parameters
+        ----------
+        name : str
+            Of the new group.
+        x1, x2, x3 : float or None
+            Coordinates, m, met to within 1e-6 of the size of the mesh; None leaves a coordinate free.
+
+        Raises
+        ------
+        InputError
+            No boundary edge is there, no coordinate is given, or the name is taken.
+        """
+        edges = self.boundary_edges
+        chosen = self._select(name, "edge", edges, self.points[edges], (x1, x2, x3))
+        return self._with_groups(edge_groups={**self.edge_groups, name: chosen})
+
+    def select_nodes(
+        self, name: str, x1: float | None = None, x2: float | None = None, x3: float | None = None
+    ) -> Mesh:
+        """The same mesh with one more node group: the nodes, inside too, that have these coordinates.
+
+        Parameters and errors are those of `select_edges`.
+        """
+        nodes = np.arange(len(self.points))
+        chosen = self._select(name, "node", nodes, self.points[:, None], (x1, x2, x3))
+        return self._with_groups(node_groups={**self.node_groups, name: chosen})
+
+    def _select(
+        self, name: str, kind: str, items: IntArray, positions: FloatArray, wanted: tuple[float | None, ...]
+    ) -> IntArray:
+        """Those of `items` whose positions (items, nodes, 3) have the wanted coordinates, read-only."""
+        check_name(name, kind, self._kinds)
+        axes = [axis for axis in range(3) if wanted[axis] is not None]
+        if not axes:
+            raise InputError(f"Group '{name}': give at least one of the coordinates x1, x2, x3.")
+        what = "boundary edge" if kind == "edge" else "node"
+        if not len(items):
+            raise InputError(f"Group '{name}': the surface is closed, it has no {what}.")
+        values = np.array([wanted[axis] for axis in axes], dtype=np.float64)
+        if not np.isfinite(values).all():
+            raise InputError(f"Group '{name}': coordinates must be finite, not {values.tolist()}.")
+        gap = np.abs(positions[:, :, axes] - values).max(axis=(1, 2))
+        chosen: IntArray = items[gap <= COINCIDENT * self.size]
+        if not len(chosen):
+            sought = ", ".join(f"X{axis + 1} = {wanted[axis]:.6g} m" for axis in axes)
+            raise InputError(
+                f"Group '{name}': no {what} has {sought}. The nearest is at "
+                f"{_places(positions[np.argmin(gap)])}; the mesh spans {place(self.points.min(axis=0))} to "
+                f"{place(self.points.max(axis=0))}."
+            )
+        return locked(chosen)
+
+    def _with_groups(self, **groups: Mapping[str, IntArray]) -> Mesh:
+        """A copy that shares the checked arrays."""
+        other = copy.copy(self)
+        for kind, names in groups.items():
+            object.__setattr__(other, kind, dict(names))
+        return other
+
+
+def _places(positions: FloatArray) -> str:
+    return " to ".join(place(position) for position in positions[:2])
