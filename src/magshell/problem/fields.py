@@ -1,0 +1,130 @@
+"""What may stand to the right of an equals sign in a problem file: quantities, counts, names, lists of them.
+
+Every type here turns a value as TOML gives it into SI and raises `InputError` with what is wrong and what
+would be right; where it is wrong is added by `magshell.problem.reading`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import partial
+from typing import Annotated
+
+from pydantic import AfterValidator, BeforeValidator
+
+from magshell import units
+from magshell.errors import InputError
+
+# Beyond these no shell exists; within them no product of two magnitudes overflows or vanishes.
+SMALLEST, LARGEST = 1e-12, 1e12
+MOST_DIVISIONS = 10_000
+_NAME = re.compile(r"\w[\w '*+.-]*")
+_PROBE_NAME = re.compile(r"\w[\w'-]*")
+
+
+def _read(value: object, dimension: units.Dimension, unit: str | None = None) -> float:
+    number = units.parse(value, dimension, unit)
+    if abs(number) > LARGEST or 0.0 < abs(number) < SMALLEST:
+        raise InputError(f"'{value}' is beyond any {dimension.name} that makes sense")
+    return number
+
+
+def _quantity(dimension: units.Dimension, unit: str | None = None) -> BeforeValidator:
+    return BeforeValidator(partial(_read, dimension=dimension, unit=unit))
+
+
+def _positive_quantity(dimension: units.Dimension) -> BeforeValidator:
+    def read(value: object) -> float:
+        number = _read(value, dimension)
+        if number <= 0.0:
+            raise InputError(f"'{value}' is not positive")
+        return number
+
+    return BeforeValidator(read)
+
+
+def _list_of(count: int | tuple[int, ...], what: str) -> BeforeValidator:
+    counts = (count,) if isinstance(count, int) else count
+
+    def read(value: object) -> object:
+        if not isinstance(value, list | tuple) or len(value) not in counts:
+            has = f"has {len(value)} entries" if isinstance(value, list | tuple) else "is not a list"
+            raise InputError(f"{has}; expected {' or '.join(map(str, counts))}: {what}")
+        return value
+
+    return BeforeValidator(read)
+
+
+def _count(value: object) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= MOST_DIVISIONS:
+        raise InputError(f"{_printable(value)} is not a whole number from 1 to {MOST_DIVISIONS}")
+    return value
+
+
+def _text_like(pattern: re.Pattern[str], rule: str) -> Callable[[object], str]:
+    def read(value: object) -> str:
+        if not isinstance(value, str):
+            raise InputError(f"{_printable(value)} is not a name; write it in quotes")
+        if not pattern.fullmatch(value):
+            raise InputError(f"{value!r} is not a name: {rule}")
+        return value
+
+    return read
+
+
+def _one_or_more(value: object) -> object:
+    if value == []:
+        raise InputError("is an empty list; name at least one group or leave the key out")
+    return [value] if isinstance(value, str) else value
+
+
+def _nonzero(value: tuple[float, float, float]) -> tuple[float, float, float]:
+    if not any(value):
+        raise InputError("is the zero vector; it must have a direction")
+    return value
+
+
+def _printable(value: object) -> str:
+    try:
+        text = repr(value)
+    except ValueError:  # an integer of more digits than Python prints
+        return "a huge integer"
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+Length = Annotated[float, _quantity(units.LENGTH)]
+PositiveLength = Annotated[float, _positive_quantity(units.LENGTH)]
+Stress = Annotated[float, _quantity(units.STRESS)]
+PositiveStress = Annotated[float, _positive_quantity(units.STRESS)]
+FluxDensity = Annotated[float, _quantity(units.FLUX_DENSITY)]
+PositiveFluxDensity = Annotated[float, _positive_quantity(units.FLUX_DENSITY)]
+Degrees = Annotated[float, _quantity(units.ANGLE, unit="deg")]
+Number = Annotated[float, _quantity(units.NUMBER)]
+PositiveNumber = Annotated[float, _positive_quantity(units.NUMBER)]
+Count = Annotated[int, BeforeValidator(_count)]
+
+Name = Annotated[str, BeforeValidator(_text_like(_NAME, "letters, digits, spaces and _ - + . * ' only"))]
+ProbeName = Annotated[str, BeforeValidator(_text_like(_PROBE_NAME, "letters, digits and _ - ' only"))]
+Names = Annotated[tuple[Name, ...], BeforeValidator(_one_or_more)]
+
+Divisions = Annotated[tuple[Count, Count], _list_of(2, "numbers of elements in the two directions")]
+AngleRange = Annotated[tuple[Degrees, Degrees], _list_of(2, "first and last angle")]
+Position = Annotated[tuple[Length, Length, Length], _list_of(3, "coordinates X1, X2, X3")]
+FluxVector = Annotated[
+    tuple[FluxDensity, FluxDensity, FluxDensity],
+    _list_of(3, "components of the flux density along X1, X2, X3"),
+]
+Direction = Annotated[
+    tuple[Number, Number, Number], _list_of(3, "components along X1, X2, X3"), AfterValidator(_nonzero)
+]
+Corner = Annotated[tuple[Length, ...], _list_of((2, 3), "coordinates X1, X2 and, out of the plane, X3")]
+Corners = Annotated[tuple[Corner, Corner, Corner, Corner], _list_of(4, "corners, one after the other")]
+
+
+DIMENSION_OF_FIELD = {"u": units.LENGTH, "w": units.NUMBER, "phi": units.INVERSE_LENGTH, "omega": units.ANGLE}
+
+
+def prescribed_value(value: object, field: str) -> float:
+    """Value of a nodal field in SI: u a length, w a number, phi an inverse length, omega an angle."""
+    return _read(value, DIMENSION_OF_FIELD[field])

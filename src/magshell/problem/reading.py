@@ -1,0 +1,196 @@
+"""From a file, or the name of a built-in problem, to checked data; every error says file, key and remedy."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import tomllib
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, get_args
+
+from magshell.errors import InputError, suggest
+from magshell.problem import examples
+
+if TYPE_CHECKING:
+    from pydantic import ValidationError
+
+    from magshell.problem.schema import ProblemFile
+
+MOST_ERRORS = 10
+
+
+def read(source: str | os.PathLike[str]) -> tuple[str, ProblemFile]:
+    """Read a problem file or a built-in problem.
+
+    Parameters
+    ----------
+    source : path or str
+        A TOML file, or the name of a built-in problem where no such file exists.
+
+    Returns
+    -------
+    str
+        The file's name, for messages.
+    ProblemFile
+        Its content in SI.
+
+    Raises
+    ------
+    InputError
+        No such file, not a text file, not TOML, or not a problem: one line per error with file and key.
+    """
+    name, text = _text(source)
+    return name, check(parse(text, name), name)
+
+
+def parse(text: str, name: str) -> dict[str, Any]:
+    """TOML to plain data; a syntax error names line and column."""
+    if not text.strip():
+        raise InputError(
+            f"{name}: the file is empty. See a problem that works with: magshell examples --copy strip-10"
+        )
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{name}: not valid TOML: {_explained(str(error))}") from None
+    except RecursionError:
+        raise InputError(f"{name}: not valid TOML: lists or tables are nested too deeply") from None
+    except ValueError as error:  # integers of thousands of digits
+        raise InputError(f"{name}: not valid TOML: {error}") from None
+
+
+def check(data: Mapping[str, Any], name: str) -> ProblemFile:
+    """Plain data to a problem in SI.
+
+    Parameters
+    ----------
+    data : mapping
+        As TOML gives it.
+    name : str
+        What messages call the file.
+
+    Raises
+    ------
+    InputError
+        One line per error, each with file and key.
+    """
+    from pydantic import ValidationError
+
+    from magshell.problem.schema import ProblemFile
+
+    try:
+        return ProblemFile.model_validate(data)
+    except ValidationError as error:
+        raise InputError("\n".join(_lines(error, name))) from None
+
+
+def _text(source: str | os.PathLike[str]) -> tuple[str, str]:
+    path = pathlib.Path(source)
+    try:
+        if not path.is_file() and os.fspath(source) in examples.names():
+            return f"{source}.toml", examples.text(os.fspath(source))
+        content = path.read_bytes()
+    except FileNotFoundError:
+        raise InputError(_not_found(path)) from None
+    except IsADirectoryError:
+        raise InputError(f"{source}: is a folder; name a problem file (.toml) in it") from None
+    except (OSError, ValueError) as error:
+        raise InputError(f"{source}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    try:
+        return path.name, content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(
+            f"{path.name}: is not a text file in UTF-8 (byte {error.start} is 0x{content[error.start]:02x}); "
+            "a problem is a TOML file"
+        ) from None
+
+
+def _not_found(path: pathlib.Path) -> str:
+    here = [file.name for file in path.parent.glob("*.toml")] if path.parent.is_dir() else []
+    return (
+        f"{path}: there is no such file or built-in problem. {suggest(path.name, [*here, *examples.names()])}"
+    )
+
+
+def _explained(error: str) -> str:
+    for marker in ("Cannot overwrite a value", "Cannot declare", "Cannot mutate"):
+        if error.startswith(marker):
+            return f"a key or table is written twice: {error}"
+    return error
+
+
+def _lines(error: ValidationError, name: str) -> list[str]:
+    lines = []
+    for details in error.errors(include_url=False):
+        key, message = _located(details)
+        lines.append(f"{name}: {key}: {message}" if key else f"{name}: {message}")
+    if len(lines) > MOST_ERRORS:
+        lines[MOST_ERRORS:] = [f"{name}: and {len(lines) - MOST_ERRORS} more errors"]
+    return lines
+
+
+def _located(details: Mapping[str, Any]) -> tuple[str, str]:
+    """Key as a user would write it, and what is wrong with it."""
+    from magshell.problem.schema import ProblemFile
+
+    where = list(details["loc"])
+    context = details.get("ctx", {})
+    choice, depth = ProblemFile.chosen_by.get(str(where[0]) if where else "", ("", 0))
+    if choice and len(where) > depth:
+        del where[depth]
+    match details["type"]:
+        case "key_error":
+            where.append(context["key"])
+            message = context["message"]
+        case "value_error":
+            message = str(context["error"])
+        case "missing":
+            message = "is missing"
+        case "union_tag_not_found":
+            where.append(choice)
+            message = f"is missing. {suggest('', _kinds(str(where[0])))}"
+        case "union_tag_invalid":
+            where.append(choice)
+            message = (
+                f"'{context['tag']}' is not known. {suggest(str(context['tag']), _kinds(str(where[0])))}"
+            )
+        case "literal_error":
+            message = f"{details['input']!r} is not one of {context['expected']}"
+        case "model_attributes_type" | "dict_type":
+            message = "is not a table of keys and values"
+        case "tuple_type" | "list_type":
+            message = (
+                "is not a list"
+                if where[-1] not in ProblemFile.chosen_by
+                else f"is not a list: write [[{where[-1]}]]"
+            )
+        case "string_type":
+            message = f"{details['input']!r} is not text; write it in quotes"
+        case "bool_type":
+            message = f"{details['input']!r} is neither true nor false"
+        case "too_short":
+            message = "is empty"
+        case _:
+            message = str(details["msg"])
+    return _written(where), message
+
+
+def _kinds(table: str) -> list[str]:
+    """What the key that chooses the kind of a table may say."""
+    from magshell.problem import schema
+
+    kinds = {
+        "mesh": schema.Mesh,
+        "material": schema.Material,
+        "remanence": schema.Remanence,
+        "supports": schema.Support,
+    }
+    choice, _ = schema.ProblemFile.chosen_by[table]
+    return [get_args(kind.model_fields[choice].annotation)[0] for kind in get_args(kinds[table])]
+
+
+def _written(where: Sequence[str | int]) -> str:
+    key = ""
+    for part in where:
+        key += f"[{part}]" if isinstance(part, int) else f".{part}" if key else str(part)
+    return key

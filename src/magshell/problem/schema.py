@@ -1,0 +1,296 @@
+"""The problem file as data: which tables and keys there are, and what each may hold.
+
+After reading, every quantity is in SI (angles of the mesh generators in degrees). What a single table cannot
+know, such as whether a group exists, is checked in `magshell.problem.building`.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal, TypeAlias
+
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    StrictBool,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
+from pydantic_core import PydanticCustomError
+
+from magshell.errors import InputError, suggest
+from magshell.problem import fields as f
+
+
+def key_error(key: str, message: str) -> PydanticCustomError:
+    """An error of a table that belongs to one of its keys."""
+    return PydanticCustomError("key_error", "{message}", {"key": key, "message": message})
+
+
+class Table(BaseModel):
+    """A table of the file; a key that it does not know is an error that names the nearest it does know."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _only_known_keys(cls, data: Any) -> Any:
+        if not isinstance(data, dict):
+            raise InputError("is not a table of keys and values")
+        for key in data:
+            if key not in cls.model_fields:
+                raise key_error(key, f"is an unknown key. {suggest(key, cls.model_fields)}")
+        return data
+
+
+class Selection(Table):
+    """Everything on the boundary (edges) or in the mesh (nodes) that has these coordinates."""
+
+    x1: f.Length | None = None
+    x2: f.Length | None = None
+    x3: f.Length | None = None
+
+    @model_validator(mode="after")
+    def _selects_something(self) -> Selection:
+        if self.x1 is None and self.x2 is None and self.x3 is None:
+            raise InputError("selects nothing; give at least one of x1, x2, x3")
+        return self
+
+
+class _Groups(Table):
+    edge_groups: dict[f.Name, Selection] = {}
+    node_groups: dict[f.Name, Selection] = {}
+
+
+class Rectangle(_Groups):
+    """Rectangle in the plane X1-X2 with a corner at the origin; edge groups left, right, bottom, top."""
+
+    generator: Literal["rectangle"]
+    length: f.PositiveLength
+    width: f.PositiveLength
+    elements: f.Divisions
+
+
+class Block(Table):
+    """Four-sided block between its corners, itself an element group."""
+
+    corners: f.Corners
+    elements: f.Divisions | None = None
+
+
+class Blocks(_Groups):
+    """Welded four-sided blocks; `elements` holds for the blocks that do not say their own."""
+
+    generator: Literal["blocks"]
+    elements: f.Divisions | None = None
+    blocks: Annotated[dict[f.Name, Block], Field(min_length=1)]
+
+    @model_validator(mode="after")
+    def _every_block_is_divided(self) -> Blocks:
+        for name, block in self.blocks.items():
+            if block.elements is None and self.elements is None:
+                raise key_error(f"blocks.{name}.elements", "is missing, and mesh.elements as well")
+        return self
+
+
+class Cylinder(_Groups):
+    """Tube or sector of one; edge groups start, end and, for a sector, angle-start, angle-stop."""
+
+    generator: Literal["cylinder"]
+    radius: f.PositiveLength
+    length: f.PositiveLength
+    elements: f.Divisions
+    angle: f.AngleRange = (0.0, 360.0)
+    axis: f.Direction = (0.0, 0.0, 1.0)
+    zero: f.Direction = (1.0, 0.0, 0.0)
+
+
+class SpherePatch(_Groups):
+    """Patch of a sphere about the origin, polar angle from +X3; edge groups top, bottom, left, right."""
+
+    generator: Literal["sphere-patch"]
+    radius: f.PositiveLength
+    polar: f.AngleRange
+    azimuth: f.AngleRange
+    elements: f.Divisions
+
+
+class ShellTable(Table):
+    """What the surface is made into."""
+
+    thickness: f.PositiveLength
+
+
+class _Material(Table):
+    shear_modulus: f.PositiveStress
+    lame_lambda: f.Stress
+    coupling_modulus: f.PositiveStress | None = None
+    length_scale: f.PositiveLength | None = None
+
+    @model_validator(mode="after")
+    def _is_stable(self) -> _Material:
+        if 3.0 * self.lame_lambda + 2.0 * self.shear_modulus <= 0.0:
+            raise key_error(
+                "lame_lambda", "makes the bulk modulus negative; it must exceed -2/3 shear_modulus"
+            )
+        return self
+
+
+class NeoHookean(_Material):
+    """Micropolar neo-Hookean material."""
+
+    law: Literal["micropolar-neo-hookean"]
+
+
+class MooneyRivlin(_Material):
+    """Micropolar Mooney–Rivlin material."""
+
+    law: Literal["micropolar-mooney-rivlin"]
+    second_invariant_share: f.Number = 0.25
+
+    @model_validator(mode="after")
+    def _shares(self) -> MooneyRivlin:
+        share = self.second_invariant_share
+        if not 0.0 <= share < 1.0:
+            raise key_error("second_invariant_share", f"is {share:g}; it must be at least 0 and less than 1")
+        if self.lame_lambda < 2.0 * share * self.shear_modulus:
+            raise key_error("lame_lambda", "must be at least 2 second_invariant_share × shear_modulus")
+        return self
+
+
+class _Remanence(Table):
+    group: f.Names | None = None
+
+
+class ConstantRemanence(_Remanence):
+    """The same vector everywhere, given as it is or as a magnitude along a direction."""
+
+    kind: Literal["constant"]
+    vector: f.FluxVector | None = None
+    magnitude: f.PositiveFluxDensity | None = None
+    direction: f.Direction | None = None
+
+    @model_validator(mode="after")
+    def _is_given_once(self) -> ConstantRemanence:
+        polar = (self.magnitude is not None, self.direction is not None)
+        if self.vector is None and polar == (False, False):
+            raise key_error("vector", "is missing; give it, or magnitude and direction")
+        if self.vector is not None and any(polar):
+            raise key_error("vector", "is given beside magnitude or direction; give one or the other")
+        if self.vector is None and not all(polar):
+            present, missing = ("magnitude", "direction") if polar[0] else ("direction", "magnitude")
+            raise key_error(missing, f"is missing beside {present}")
+        return self
+
+
+class MeridionalRemanence(_Remanence):
+    """Along the meridians of a sphere, away from the pole on the +axis side, mirrored at the equator."""
+
+    kind: Literal["meridional"]
+    magnitude: f.PositiveFluxDensity
+    axis: f.Direction = (0.0, 0.0, 1.0)
+    mirrored: StrictBool = True
+
+
+class CircumferentialRemanence(_Remanence):
+    """Around an axis; with `towards`, in the sense that has a positive component along it."""
+
+    kind: Literal["circumferential"]
+    magnitude: f.PositiveFluxDensity
+    axis: f.Direction = (0.0, 0.0, 1.0)
+    towards: f.Direction | None = None
+
+
+class FieldTable(Table):
+    """The external field, proportional to the load factor."""
+
+    flux_density: f.FluxVector
+    stops: tuple[f.PositiveFluxDensity, ...] = ()
+    coupling: Literal["couple", "micro-rotation", "deformation-gradient"] = "couple"
+
+    @model_validator(mode="after")
+    def _stops_lie_on_the_way(self) -> FieldTable:
+        end = sum(component**2 for component in self.flux_density) ** 0.5
+        for number, stop in enumerate(self.stops):
+            if stop > end * (1.0 + 1e-12):
+                raise key_error(f"stops[{number}]", f"{stop:g} T lies beyond the end of the path, {end:g} T")
+            if number and stop <= self.stops[number - 1]:
+                raise key_error(f"stops[{number}]", "does not exceed the one before; stops must rise")
+        return self
+
+
+class _Support(Table):
+    group: f.Name
+
+
+class ClampTable(_Support):
+    """No displacement, no rotation; the thickness stretch stays free."""
+
+    kind: Literal["clamp"]
+
+
+class SimpleTable(_Support):
+    """No displacement."""
+
+    kind: Literal["simple"]
+
+
+class SymmetryTable(_Support):
+    """Mirror plane with this normal."""
+
+    kind: Literal["symmetry"]
+    normal: f.Direction
+
+
+class PrescribeTable(_Support):
+    """A nodal field, or one component of it, that reaches `value` at load factor 1."""
+
+    kind: Literal["prescribe"]
+    field: Literal["u", "w", "phi", "omega"]
+    component: Literal[1, 2, 3] | None = None
+    value: float = 0.0
+
+    @field_validator("value", mode="before")
+    @classmethod
+    def _has_the_unit_of_the_field(cls, value: object, info: ValidationInfo) -> float:
+        return f.prescribed_value(value, info.data["field"]) if "field" in info.data else 0.0
+
+    @model_validator(mode="after")
+    def _phi_is_a_scalar(self) -> PrescribeTable:
+        if self.field == "phi" and self.component is not None:
+            raise key_error(
+                "component", "makes no sense with the field phi, which has only one; leave it out"
+            )
+        return self
+
+
+Mesh: TypeAlias = Rectangle | Blocks | Cylinder | SpherePatch
+Material: TypeAlias = NeoHookean | MooneyRivlin
+Remanence: TypeAlias = ConstantRemanence | MeridionalRemanence | CircumferentialRemanence
+Support: TypeAlias = ClampTable | SimpleTable | SymmetryTable | PrescribeTable
+
+
+class ProblemFile(Table):
+    """The whole file."""
+
+    # Key that chooses among the kinds of a table, and where in the path of an error pydantic puts the choice.
+    chosen_by: ClassVar[dict[str, tuple[str, int]]] = {
+        "mesh": ("generator", 1),
+        "material": ("law", 1),
+        "remanence": ("kind", 2),
+        "supports": ("kind", 2),
+    }
+
+    title: str = ""
+    description: str = ""
+    mesh: Annotated[Mesh, Field(discriminator="generator")]
+    shell: ShellTable
+    material: Annotated[Material, Field(discriminator="law")]
+    remanence: tuple[Annotated[Remanence, Field(discriminator="kind")], ...] = ()
+    field: FieldTable
+    supports: Annotated[
+        tuple[Annotated[Support, Field(discriminator="kind")], ...],
+        Field(min_length=1),
+    ]
+    probes: dict[f.ProbeName, f.Position] = {}

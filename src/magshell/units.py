@@ -1,0 +1,187 @@
+"""Quantities with units, as people write them: "0.9 mm" in, SI out, and back.
+
+This is the only place that knows a unit; everywhere else a number is in metre, pascal, tesla and radian.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from dataclasses import dataclass
+from decimal import Decimal, localcontext
+
+from magshell.errors import InputError
+
+_PI = "3.14159265358979323846264338327950288"
+_NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,6})?)(.*)", re.DOTALL)
+_NOT_FINITE = re.compile(r"\s*[+-]?(nan|inf|infinity)\b", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """A kind of quantity and the units it may be written in.
+
+    Attributes
+    ----------
+    name : str
+        For messages.
+    units : dict of str to Decimal
+        Value of one unit in SI; the SI unit is the first.
+    display : tuple of (str, float)
+        Unit and the smallest magnitude (SI) that is shown in it, in falling order.
+    """
+
+    name: str
+    units: dict[str, Decimal]
+    display: tuple[tuple[str, float], ...]
+
+    @property
+    def allowed(self) -> str:
+        return ", ".join(self.units)
+
+
+def _dimension(name: str, units: dict[str, str], display: dict[str, float]) -> Dimension:
+    return Dimension(name, {unit: Decimal(value) for unit, value in units.items()}, tuple(display.items()))
+
+
+with localcontext() as _context:
+    _context.prec = 36
+    _DEGREE = str(Decimal(_PI) / 180)
+
+LENGTH = _dimension(
+    "length",
+    {"m": "1", "cm": "1e-2", "mm": "1e-3", "um": "1e-6", "µm": "1e-6"},
+    {"m": 1.0, "mm": 1e-4, "um": 0.0},
+)
+STRESS = _dimension(
+    "stress",
+    {"Pa": "1", "kPa": "1e3", "MPa": "1e6", "GPa": "1e9", "N/mm^2": "1e6"},
+    {"GPa": 1e9, "MPa": 1e6, "kPa": 1e3, "Pa": 0.0},
+)
+FLUX_DENSITY = _dimension(
+    "magnetic flux density",
+    {"T": "1", "mT": "1e-3", "uT": "1e-6", "µT": "1e-6", "G": "1e-4", "Gauss": "1e-4"},
+    {"T": 1.0, "mT": 1e-4, "uT": 0.0},
+)
+ANGLE = _dimension("angle", {"rad": "1", "deg": _DEGREE}, {"deg": 0.0})
+INVERSE_LENGTH = _dimension("inverse length", {"1/m": "1", "1/mm": "1e3"}, {"1/mm": 1e3, "1/m": 0.0})
+NUMBER = Dimension("number without unit", {}, ())
+
+
+def parse(value: object, dimension: Dimension, unit: str | None = None) -> float:
+    """Turn a quantity into a float.
+
+    Parameters
+    ----------
+    value : str, int or float
+        Number and unit, such as "0.9 mm". A bare number is accepted for ``NUMBER``, elsewhere only exactly 0.
+    dimension : Dimension
+        What kind of quantity is expected.
+    unit : str, optional
+        Unit of the result; SI without it.
+
+    Returns
+    -------
+    float
+        The double nearest to the decimal number written, in `unit`.
+
+    Raises
+    ------
+    InputError
+        Not a number, not finite, no unit where one is needed, or a unit of another kind.
+    """
+    number, found = _split(value, dimension)
+    if not math.isfinite(float(number)):
+        raise InputError(f"{_quoted(value)} is not a finite number")
+    if not dimension.units:
+        if found:
+            raise InputError(f"{_quoted(value)} has the unit '{found}' where a {dimension.name} is expected")
+        return float(number)
+    if not found:
+        if float(number) == 0.0:
+            return 0.0
+        raise InputError(
+            f"{_quoted(value)} has no unit where a {dimension.name} is expected; write a string such as "
+            f'"{number} {next(iter(dimension.units))}" (units: {dimension.allowed})'
+        )
+    if found not in dimension.units:
+        raise InputError(f"{_quoted(value)} {_wrong_unit(found, dimension)}")
+    with localcontext() as context:
+        context.prec = 36
+        result = float(
+            number * (dimension.units[found] / dimension.units[unit or next(iter(dimension.units))])
+        )
+    if not math.isfinite(result):
+        raise InputError(f"{_quoted(value)} is not a finite number")
+    return result
+
+
+def show(value: float, dimension: Dimension, digits: int = 4) -> str:
+    """Write an SI value for people, in the unit that keeps the number short.
+
+    Parameters
+    ----------
+    value : float
+        In SI units.
+    dimension : Dimension
+        Kind of quantity.
+    digits : int, optional
+        Significant digits.
+    """
+    if not dimension.units:
+        return f"{value:.{digits}g}"
+    if value == 0.0:
+        return "0"
+    unit = next(name for name, smallest in dimension.display if abs(value) >= smallest)
+    return f"{value / float(dimension.units[unit]):.{digits}g} {unit}"
+
+
+def _split(value: object, dimension: Dimension) -> tuple[Decimal, str]:
+    """Number and unit text of what was written."""
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        try:
+            return Decimal(repr(float(value))), ""
+        except OverflowError:
+            raise InputError(f"{_quoted(value)} is not a finite number") from None
+    if not isinstance(value, str):
+        raise InputError(f"{_quoted(value)} is not a {dimension.name}; {_example(dimension)}")
+    if _NOT_FINITE.match(value):
+        raise InputError(f"{_quoted(value)} is not a finite number")
+    match = _NUMBER.fullmatch(value)
+    if match is None:
+        raise InputError(f"{_quoted(value)} does not begin with a number; {_example(dimension)}")
+    number, unit = match.group(1), match.group(2).strip()
+    if float(number) == 0.0:
+        number = "0"
+    return Decimal(number), "1" + unit if unit.startswith("/") else unit
+
+
+def _wrong_unit(found: str, dimension: Dimension) -> str:
+    for other in (LENGTH, STRESS, FLUX_DENSITY, ANGLE, INVERSE_LENGTH):
+        if found in other.units:
+            return f"is a {other.name} where a {dimension.name} is expected (units: {dimension.allowed})"
+    names = list(dimension.units)
+    near = [name for name in names if name.casefold() == found.casefold()]
+    near = near or difflib.get_close_matches(found, names, n=1, cutoff=0.5)
+    hint = f"did you mean '{near[0]}'? " if near else ""
+    return f"has the unknown unit '{_short(found)}'; {hint}(units of {dimension.name}: {dimension.allowed})"
+
+
+def _example(dimension: Dimension) -> str:
+    if not dimension.units:
+        return "write a number such as 0.5"
+    unit = next(iter(dimension.units))
+    return f'write a number with its unit, such as "1 {unit}" (units: {dimension.allowed})'
+
+
+def _short(text: str) -> str:
+    printable = "".join(c if c.isprintable() else "?" for c in text)
+    return printable if len(printable) <= 40 else printable[:37] + "..."
+
+
+def _quoted(value: object) -> str:
+    try:
+        return f"'{_short(str(value))}'"
+    except ValueError:  # an integer of more digits than Python prints
+        return "a huge integer"
