@@ -20,7 +20,7 @@ class Grid(NamedTuple):
     """(elements, 8): numbered with s running faster, counter-clockwise from s to t."""
 
     def sides(self, where: Mapping[str, tuple[int, float]]) -> dict[str, IntArray]:
-        """Boundary edges (k, 3) by name; `where` has the parameter, 0 for s or 1 for t, and its value there."""
+        """Boundary edges (k, 3) by name; `where` has the parameter, 0 for s or 1 for t, and its value."""
         edges = find_edges(self.elements)
         free = edges.sides[edges.boundary]
         return {

@@ -123,7 +123,7 @@ def _check_block(block: _Block, flat: bool) -> None:
 
 
 def _check_sides(every: list[_Block], tolerance: float) -> None:
-    """Refuse sides that more than two blocks share, that two walk in the same sense, or divide differently."""
+    """Refuse sides that more than two blocks have, that two walk in the same sense or divide differently."""
     corners = np.concatenate([block.corners for block in every])
     _, numbers = _weld(corners, np.arange(len(corners)).reshape(-1, 4), tolerance)
     sharing: dict[frozenset[int], list[tuple[_Block, int]]] = {}
@@ -189,5 +189,5 @@ def _weld(points: FloatArray, elements: IntArray, tolerance: float) -> tuple[Flo
     pairs = cKDTree(points).query_pairs(tolerance, output_type="ndarray")
     keeper = np.arange(len(points))
     np.minimum.at(keeper, pairs.max(axis=1), pairs.min(axis=1))
-    kept, elements = np.unique(keeper[elements], return_inverse=True)
-    return points[kept], elements.reshape(-1, 8)
+    kept, numbers = np.unique(keeper[elements], return_inverse=True)
+    return points[kept], numbers.reshape(elements.shape)

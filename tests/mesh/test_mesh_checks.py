@@ -1,0 +1,312 @@
+"""What a mesh refuses, and that the message names the place."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+from magshell.errors import MeshError
+from magshell.mesh import Mesh, cylinder, rectangle, sphere_patch
+
+
+def refused(points, elements, *phrases, **groups):
+    with pytest.raises(MeshError) as caught:
+        Mesh(points, elements, **groups)
+    for phrase in phrases:
+        assert phrase in str(caught.value), str(caught.value)
+
+
+@pytest.fixture
+def two():
+    """Points and elements of two unit squares side by side, writable."""
+    mesh = rectangle(2.0, 1.0, (2, 1))
+    return mesh.points.copy(), mesh.elements.copy()
+
+
+def glued(*meshes):
+    """Points and elements of meshes put side by side, nothing welded."""
+    starts = np.cumsum([0] + [len(mesh.points) for mesh in meshes[:-1]])
+    points = np.concatenate([mesh.points for mesh in meshes])
+    return points, np.concatenate([mesh.elements + start for mesh, start in zip(meshes, starts, strict=True)])
+
+
+def moved(mesh, x1=0.0, x2=0.0, x3=0.0):
+    return Mesh(mesh.points + np.array([x1, x2, x3]), mesh.elements)
+
+
+def node_at(points, *position):
+    return int(np.argmin(np.linalg.norm(points - position, axis=1)))
+
+
+def test_a_sound_mesh_is_copied_and_read_only(two):
+    points, elements = two
+    mesh = Mesh(points, elements)
+    points[0] = 7
+    assert (mesh.points[0] == 0).all()
+    for array in (mesh.points, mesh.elements, mesh.corner_nodes, mesh.boundary_edges, *mesh.parts):
+        assert not array.flags.writeable
+
+
+@pytest.mark.parametrize(
+    ("points", "elements", "phrases"),
+    [
+        (np.zeros((8, 2)), [range(8)], ["Points", "(n, 3)", "(8, 2)"]),
+        (np.zeros(8), [range(8)], ["Points", "(n, 3)", "(8,)"]),
+        ([], [range(8)], ["Points", "empty"]),
+        (np.zeros((8, 3)), [range(4)], ["Elements", "(n, 8)", "(1, 4)"]),
+        (np.zeros((8, 3)), [], ["Elements", "empty"]),
+        (np.zeros((8, 3)), [[0.5] * 8], ["Elements", "whole numbers", "float64"]),
+        (np.zeros((8, 3)), [range(8), range(4)], ["Elements", "different lengths"]),
+        ([["a", "b", "c"]], [range(8)], ["Points", "numbers"]),
+    ],
+)
+def test_wrong_shapes(points, elements, phrases):
+    refused(points, elements, *phrases)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_a_position_that_is_not_finite(two, value):
+    points, elements = two
+    points[3, 1] = value
+    refused(points, elements, "Node 3", str(value), "finite")
+
+
+@pytest.mark.parametrize("number", [-1, 13])
+def test_a_node_out_of_range(two, number):
+    points, elements = two
+    elements[1, 2] = number
+    refused(points, elements, f"Element 1 has node {number}", "0 to 12")
+
+
+def test_a_node_twice_in_an_element(two):
+    points, elements = two
+    elements[1, 2] = elements[1, 1]
+    refused(points, elements, f"Element 1 has node {elements[1, 1]} twice")
+
+
+def test_unused_nodes(two):
+    points, elements = two
+    refused(np.vstack([points, [[5, 5, 5], [6, 6, 6]]]), elements, "node 13, 14", "(5, 5, 5) m")
+
+
+def test_an_element_twice(two):
+    points, elements = two
+    turned = elements[1, [1, 2, 3, 0, 5, 6, 7, 4]]
+    refused(points, np.vstack([elements, turned]), "Elements 1 and 2", "same four corners")
+
+
+def test_neighbours_with_opposite_normals_are_both_named(two):
+    points, elements = two
+    elements[1] = elements[1, [0, 3, 2, 1, 7, 6, 5, 4]]
+    refused(points, elements, "Elements 0 and 1 disagree", "node", "counter-clockwise")
+
+
+def test_a_moebius_strip_has_no_upper_side():
+    mesh = rectangle(12.0, 1.0, (12, 1))
+    turn = mesh.points[:, 0] / 12 * 2 * np.pi
+    across = (mesh.points[:, 1] - 0.5)[:, None]
+    outward = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
+    tilt = np.cos(turn / 2)[:, None] * np.array([0, 0, 1.0]) + np.sin(turn / 2)[:, None] * outward
+    points = 4 * outward + across * tilt
+    left, right = mesh.nodes_of("left"), mesh.nodes_of("right")
+    weld = np.arange(len(points))
+    left, right = (n[np.argsort(mesh.points[n, 1])] for n in (left, right))
+    weld[right] = left[::-1]
+    kept, elements = np.unique(weld[mesh.elements], return_inverse=True)
+    refused(points[kept], elements.reshape(-1, 8), "Elements 0 and 11 disagree")
+
+
+def test_three_elements_on_an_edge(two):
+    points, elements = two
+    fin = rectangle(1.0, 1.0, (1, 1))
+    upright = np.stack([np.ones(8), fin.points[:, 1], fin.points[:, 0]], axis=1)
+    number = np.array([node_at(points, *p) if p[2] == 0 else -1 for p in upright])
+    number[number < 0] = len(points) + np.arange((number < 0).sum())
+    points = np.vstack([points, upright[upright[:, 2] > 0]])
+    refused(
+        points, np.vstack([elements, number[fin.elements]]), "Elements 0, 1, 2 share the edge", "at most two"
+    )
+
+
+def test_neighbours_with_a_middle_each(two):
+    points, elements = two
+    points = np.vstack([points, [1.0, 0.5, 0.0]])
+    elements[1, 7] = 13
+    refused(points, elements, "Elements 0 and 1 share the corners", "13", "in the middle")
+
+
+def test_a_node_in_the_middle_of_two_edges():
+    points, elements = glued(rectangle(1.0, 1.0, (1, 1)), moved(rectangle(1.0, 1.0, (1, 1)), x1=3.0))
+    kept = np.delete(np.arange(16), elements[1, 7])
+    elements[1, 7] = elements[0, 5]
+    refused(
+        points[kept], np.searchsorted(kept, elements), "Elements 0 and 1", "middle of two different edges"
+    )
+
+
+def test_a_middle_that_is_a_corner_of_the_neighbour():
+    """A coarse element beside two fine ones that use its middle as their common corner."""
+    points, elements = glued(rectangle(1.0, 1.0, (1, 1)), moved(rectangle(1.0, 1.0, (1, 2)), x1=1.0))
+    weld = np.arange(len(points))
+    for height in (0.0, 0.5, 1.0):
+        one, other = np.flatnonzero(np.linalg.norm(points - [1.0, height, 0], axis=1) < 1e-9)
+        weld[other] = one
+    kept, welded = np.unique(weld[elements], return_inverse=True)
+    refused(
+        points[kept], welded.reshape(-1, 8), "corner of element 2", "edge of element 0", "refine element 0"
+    )
+
+
+def test_coincident_nodes_that_are_not_welded():
+    points, elements = glued(rectangle(1.0, 1.0, (1, 1)), moved(rectangle(1.0, 1.0, (1, 1)), x1=1.0))
+    refused(points, elements, "Elements 0 and 1 are not joined", "(1, 0, 0) m", "Weld", "3 such places")
+
+
+def test_closed_surfaces_one_upon_the_other():
+    tube = cylinder(1.0, 1.0, (6, 1))
+    points, elements = glued(tube, tube)
+    refused(points, elements, "Elements 0 and 6 are not joined")
+
+
+@pytest.mark.parametrize("fine", [3, 4])
+def test_a_node_on_a_straight_edge_of_another_element(fine):
+    """Several elements against one: none of their nodes falls on its ends or its middle."""
+    side = moved(rectangle(1.0, 0.8, (1, fine)), x1=1.0, x2=0.13)
+    points, elements = glued(rectangle(1.0, 1.0, (1, 1)), side)
+    refused(points, elements, "Elements 0 and", "do not match", "lies on the edge of the first", "Divide")
+
+
+def test_a_node_on_a_curved_edge_of_another_element():
+    """Of two rings one is turned by 5 of the 30 degrees of an element: nodes lie on the true circle only."""
+    points, elements = glued(
+        cylinder(1.0, 0.5, (12, 2)), moved(cylinder(1.0, 0.5, (12, 2), angle=(5, 365)), x3=0.5)
+    )
+    refused(points, elements, "do not match", "lies on the edge of the first")
+
+
+def test_a_narrow_gap_is_allowed():
+    points, elements = glued(rectangle(1.0, 1.0, (2, 2)), moved(rectangle(1.0, 1.0, (3, 3)), x1=1.01))
+    assert [len(part) for part in Mesh(points, elements).parts] == [4, 9]
+
+
+def test_slender_elements_are_allowed():
+    mesh = rectangle(1.0, 1e-4, (1, 4))
+    assert len(mesh.elements) == 4
+
+
+def test_an_edge_of_no_length(two):
+    points, elements = two
+    points[elements[1, 2]] = points[elements[1, 1]]
+    refused(points, elements, "Element 1 has an edge of no length", str(elements[1, 1]), str(elements[1, 2]))
+
+
+def straight(corners):
+    """Points of one element with straight edges."""
+    corners = np.array(corners, dtype=float)
+    return np.vstack([corners, 0.5 * (corners + np.roll(corners, -1, axis=0))])
+
+
+@pytest.mark.parametrize(
+    "corners",
+    [
+        [(0, 0, 0), (1, 1, 0), (1, 0, 0), (0, 1, 0)],
+        [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)],
+        [(0, 0, 0), (0, 3, 2), (0, 3, 0), (0, 0, 1)],
+    ],
+)
+def test_a_bow_tie(corners):
+    refused(straight(corners), [range(8)], "Element 0 is a bow-tie", "order of a walk")
+
+
+@pytest.mark.parametrize("corner", range(4))
+@pytest.mark.parametrize("depth", [0.5, 0.8])
+def test_a_corner_of_180_degrees_or_more_is_named(corner, depth):
+    """The corner is pulled to the line between its neighbours, and beyond it."""
+    corners = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], dtype=float)
+    corners[corner] += depth * (corners[(corner + 2) % 4] - corners[corner])
+    refused(
+        straight(corners), [range(8)], f"Element 0 is turned inside out at corner {corner + 1}", "180 degrees"
+    )
+
+
+def test_a_corner_is_turned_inside_out_by_curved_edges(two):
+    """Both edges at node (0, 0) bend into the element until their tangents cross."""
+    points, elements = two
+    points[node_at(points, 0.5, 0, 0)] += [0, 0.3, 0]
+    points[node_at(points, 0, 0.5, 0)] += [0.3, 0, 0]
+    refused(points, elements, "Element 0 is turned inside out at corner 1", "node 0")
+
+
+@pytest.mark.parametrize(("shift", "sound"), [(0.24, True), (0.25, False), (-0.25, False), (0.4, False)])
+def test_a_middle_must_lie_in_the_middle_half(two, shift, sound):
+    points, elements = two
+    middle = node_at(points, 1.5, 0, 0)
+    points[middle, 0] += shift
+    if sound:
+        assert len(Mesh(points, elements).elements) == 2
+    else:
+        refused(
+            points, elements, f"Element 1: node {middle}", f"{0.5 + shift:.3g} of the way", "0.25 and 0.75"
+        )
+
+
+def test_a_middle_must_not_stand_far_aside(two):
+    points, elements = two
+    middle = node_at(points, 1.5, 0, 0)
+    points[middle, 2] += 0.6
+    refused(points, elements, f"Element 1: node {middle}", "0.6 of the edge's length aside")
+
+
+@pytest.mark.parametrize(
+    ("groups", "phrases"),
+    [
+        ({"element_groups": {"arm": [0, 2]}}, ["Element group 'arm' has element 2", "0 to 1"]),
+        ({"node_groups": {"tip": [-1]}}, ["Node group 'tip' has node -1", "0 to 12"]),
+        ({"edge_groups": {"root": [[0, 99, 1]]}}, ["Edge group 'root' has node 99", "0 to 12"]),
+        ({"edge_groups": {"root": [[0, 1, 2]]}}, ["Edge group 'root': row 0", "not an edge of any element"]),
+        ({"edge_groups": {"root": [[0, 1]]}}, ["Edge group 'root'", "(n, 3)", "(1, 2)"]),
+        ({"element_groups": {"arm": []}}, ["Element group 'arm'", "empty"]),
+        ({"edge_groups": {"root": np.zeros((0, 3), int)}}, ["Edge group 'root'", "empty"]),
+        ({"node_groups": {"tip": []}}, ["Node group 'tip'", "empty"]),
+        ({"node_groups": {"tip": [1.5]}}, ["Node group 'tip'", "whole numbers"]),
+        ({"node_groups": {"tip": [1], "": [1]}}, ["''", "not empty"]),
+        ({"element_groups": {"arm": [0]}, "node_groups": {"arm": [0]}}, ["'arm'", "elements", "nodes"]),
+    ],
+)
+def test_groups_that_make_no_sense(two, groups, phrases):
+    refused(*two, *phrases, **groups)
+
+
+def test_an_edge_group_may_walk_either_way_and_lie_inside(two):
+    points, elements = two
+    start, end, middle = (node_at(points, 1, y, 0) for y in (0, 1, 0.5))
+    mesh = Mesh(points, elements, edge_groups={"joint": [[start, end, middle], [end, start, middle]]})
+    assert mesh.edge_groups["joint"].tolist() == [[start, end, middle]]
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: rectangle(1.0, 1.0, (250, 200)),
+        lambda: rectangle(1.0, 1e-3, (50000, 1)),
+        lambda: sphere_patch(1.0, (10, 170), (0, 360), (200, 250)),
+    ],
+    ids=["square", "strip", "zone"],
+)
+def test_fifty_thousand_elements_take_less_than_two_seconds(make):
+    rectangle(1.0, 1.0, (1, 1))  # imports scipy
+    start = time.process_time()
+    mesh = make()
+    seconds = time.process_time() - start
+    assert len(mesh.elements) == 50000
+    assert seconds < 2, f"{seconds:.2f} s"
+
+
+def test_importing_the_mesh_does_not_import_scipy():
+    code = "import sys, magshell.mesh; print([name for name in sys.modules if name.startswith('scipy')])"
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert found.strip() == "[]", found
