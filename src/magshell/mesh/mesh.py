@@ -68,16 +68,11 @@ class Mesh:
         check_connectivity(self.points, self.elements, self._edges)
         check_shapes(self.points, self.elements, self.size)
         check_unmatched(self.points, self.elements, self._edges, self.size)
-        self._set_groups(
-            *check_groups(
-                self.element_groups,
-                self.edge_groups,
-                self.node_groups,
-                self.points,
-                self.elements,
-                self._edges,
-            )
+        checked = check_groups(
+            self.element_groups, self.edge_groups, self.node_groups, self.points, self.elements, self._edges
         )
+        for kind, names in zip(("element_groups", "edge_groups", "node_groups"), checked, strict=True):
+            object.__setattr__(self, kind, names)
 
     def __repr__(self) -> str:
         names = ", ".join(self.groups) or "none"
@@ -86,13 +81,6 @@ class Mesh:
     @cached_property
     def _edges(self) -> Edges:
         return find_edges(self.elements)
-
-    def _set_groups(
-        self, elements: Mapping[str, IntArray], edges: Mapping[str, IntArray], nodes: Mapping[str, IntArray]
-    ) -> None:
-        object.__setattr__(self, "element_groups", dict(elements))
-        object.__setattr__(self, "edge_groups", dict(edges))
-        object.__setattr__(self, "node_groups", dict(nodes))
 
     @property
     def _kinds(self) -> dict[str, str]:
