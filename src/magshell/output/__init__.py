@@ -1,0 +1,1 @@
+"""What a solve leaves behind: histories, summaries, files for ParaView and pictures."""

@@ -1,0 +1,117 @@
+"""The picture of the load–displacement curves."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from magshell.output.style import COLOURS, DPI, TEXT, TICKS, deliver
+from magshell.typing import FloatArray
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from PIL.Image import Image
+
+    from magshell.solve.path import Path
+
+NEGLIGIBLE = 0.01
+LINES = (("--", "s"), (":", "^"), ("-", "o"))
+
+
+def draw_curve(path: Path, file: str | os.PathLike[str] | None = "curve.png") -> Image | None:
+    """Draw displacement against field at every probe, with a mark at every converged step.
+
+    The field is given in mT below, and above as the load 10³ |Bext| |Brem| / (mu mu0) of the literature,
+    with the largest |Brem| of the shell. Components below 1 % of the largest are left out. Without probes the
+    largest displacement anywhere is drawn; without a field the load factor takes its place.
+
+    Parameters
+    ----------
+    path : Path
+    file : path, optional
+        PNG file to write; None to get the picture instead.
+
+    Returns
+    -------
+    PIL.Image.Image or None
+        The picture, if no file was named.
+
+    Raises
+    ------
+    OSError
+        The disk refuses; the message names the file.
+    """
+    return deliver(curve_figure(path), file)
+
+
+def curve_figure(path: Path) -> Figure:
+    """The picture of `draw_curve` as a matplotlib figure, to go on working on."""
+    from matplotlib.figure import Figure
+    from matplotlib.ticker import MaxNLocator
+
+    figure = Figure(figsize=(9.0, 5.6), dpi=DPI, facecolor="white")
+    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.12)
+    axes = figure.subplots()
+    field = path.model.field.magnitude
+    load = np.array([step.load_factor for step in path.steps])
+    x = load if field == 0 else 1e3 * np.abs(load) * field
+    for label, values, style in sorted(_curves(path), key=lambda curve: -curve[1][-1]):
+        axes.plot(
+            x, 1e3 * values, label=label, markersize=5, markeredgecolor="white", markeredgewidth=0.6, **style
+        )
+    axes.axhline(0, color="#9aa3ad", linewidth=0.8, zorder=1)
+    axes.set_xlabel("load factor" if field == 0 else r"$|B^\mathrm{ext}|$ (mT)", **TEXT)
+    axes.set_ylabel("displacement (mm)", **TEXT)
+    axes.margins(x=0.02)
+    axes.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
+    axes.grid(color="#e5e7eb", linewidth=0.8)
+    axes.spines["right"].set_visible(False)
+    axes.tick_params(**TICKS)
+    scale = _load_per_mT(path) if field > 0 else 0.0
+    if scale > 0:
+        above = axes.secondary_xaxis("top", functions=(_times(scale), _times(1 / scale)))
+        above.set_xlabel(r"$10^3\,|B^\mathrm{ext}|\,|B^\mathrm{rem}|\,/\,(\mu\,\mu_0)$", labelpad=8, **TEXT)
+        above.tick_params(**TICKS)
+    else:
+        axes.spines["top"].set_visible(False)
+    figure.legend(loc="outside right center", frameon=False, fontsize=14, handlelength=2.6, labelspacing=0.7)
+    return figure
+
+
+def _curves(path: Path) -> list[tuple[str, FloatArray, dict[str, Any]]]:
+    """Label, values in m and style of every curve worth drawing."""
+    states = [step.state for step in path.steps]
+    probes = {
+        name: np.array([state.u[node] for state in states]) for name, node in path.model.probe_nodes.items()
+    }
+    if not probes:
+        largest = np.array([np.linalg.norm(state.u, axis=1).max() for state in states])
+        return [("largest $|u|$", largest, {"color": COLOURS[0], "marker": "o", "linewidth": 2.0})]
+    threshold = NEGLIGIBLE * max(np.abs(u).max() for u in probes.values())
+    curves = []
+    for number, (name, u) in enumerate(probes.items()):
+        for i, (line, marker) in enumerate(LINES):
+            if np.abs(u[:, i]).max() >= threshold:
+                colour = COLOURS[(i if len(probes) == 1 else number) % len(COLOURS)]
+                style = {"color": colour, "linestyle": line, "marker": marker, "linewidth": 2.0}
+                curves.append((f"{_literal(name)}  $u_{i + 1}$", u[:, i], style))
+    return curves
+
+
+def _literal(name: str) -> str:
+    """A user's name, safe from being read as mathematics."""
+    return name.replace("$", r"\$")
+
+
+def _times(factor: float) -> Any:
+    return lambda values: factor * values
+
+
+def _load_per_mT(path: Path) -> float:
+    """The nondimensional load of one millitesla: 10³ · 10⁻³ T · |Brem| / (mu mu0)."""
+    remanence = np.linalg.norm(path.discretisation.element_remanence(path.steps[0].state), axis=1).max()
+    return float(
+        remanence / (path.model.shell.material.shear_modulus * path.model.coupling.vacuum_permeability)
+    )

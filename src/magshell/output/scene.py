@@ -1,0 +1,228 @@
+"""The three-dimensional part of a picture of the shape: surface, edges, undeformed outline and field arrow.
+
+The camera looks in parallel projection, so that a position in space is a linear function of the pixel and
+lettering can be set on the picture afterwards.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from magshell.output.rendering import require_rendering
+from magshell.output.style import ACCENT, INK, PALE
+from magshell.output.tessellation import Tessellation, element_edges
+from magshell.typing import AnyArray, FloatArray
+
+if TYPE_CHECKING:
+    from magshell.mesh import Mesh
+
+OVERSAMPLING = 2
+MARGIN = 1.04
+MOST_ELEMENTS_WITH_EDGES = 4000
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A parallel projection that shows all of a set of points.
+
+    Attributes
+    ----------
+    centre : FloatArray, shape (3,)
+    axes : FloatArray, shape (3, 3)
+        Rows: to the right, up, and towards the eye.
+    half_width, half_height : float
+        Of the part of space seen, m.
+    """
+
+    centre: FloatArray
+    axes: FloatArray
+    half_width: float
+    half_height: float
+
+    def on_picture(self, points: FloatArray) -> FloatArray:
+        """Position on the picture in fractions of width and height from the lower left, shape (..., 2)."""
+        seen = (points - self.centre) @ self.axes[:2].T
+        return np.asarray(0.5 + 0.5 * seen / [self.half_width, self.half_height])
+
+
+def viewing_axes(azimuth: float, elevation: float) -> FloatArray:
+    """Rows right, up, towards the eye for an eye at these angles (degrees), X3 upright."""
+    a, e = np.radians([azimuth, elevation])
+    towards = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
+    right = np.array([-np.sin(a), np.cos(a), 0.0])
+    return np.array([right, np.cross(towards, right), towards])
+
+
+def best_axes(points: FloatArray) -> FloatArray:
+    """The view, of a few from the front and above, in which these points spread over most of the picture."""
+
+    def spread(axes: FloatArray) -> float:
+        return float(np.linalg.det(np.cov((points @ axes[:2].T).T)))
+
+    views = [viewing_axes(azimuth, 24.0) for azimuth in (-60.0, -45.0, -75.0, -30.0, -120.0, -135.0)]
+    spreads = [spread(axes) for axes in views]
+    good = [axes for axes, value in zip(views, spreads, strict=True) if value >= 0.8 * max(spreads)]
+    return good[0]
+
+
+def fit(points: FloatArray, axes: FloatArray, aspect: float) -> Camera:
+    """The smallest camera of this width over height that sees all the points, shape (n, 3)."""
+    seen = points @ axes.T
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    half = MARGIN * np.maximum((high - low)[:2] / 2, 1e-30)
+    half_height = max(half[1], half[0] / aspect)
+    return Camera(((low + high) / 2) @ axes, axes, aspect * half_height, half_height)
+
+
+def draw(
+    mesh: Mesh,
+    tessellation: Tessellation,
+    displacement: FloatArray,
+    colours: AnyArray,
+    field: FloatArray,
+    shape: tuple[int, int],
+) -> tuple[AnyArray, Camera, FloatArray | None]:
+    """Draw the deformed shell over its undeformed outline.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    tessellation : Tessellation
+        Of the mesh's elements.
+    displacement : FloatArray, shape (nodes, 3)
+        m.
+    colours : AnyArray, shape (points of the tessellation, 3)
+        Red, green, blue, 0 to 255.
+    field : FloatArray, shape (3,)
+        External flux density; only its direction is drawn, nothing if it is zero.
+    shape : (int, int)
+        Width and height of the picture, pixels.
+
+    Returns
+    -------
+    AnyArray, shape (height, width, 4)
+        Red, green, blue, opacity.
+    Camera
+    FloatArray or None, shape (2, 3)
+        Tail and head of the field arrow.
+
+    Raises
+    ------
+    RenderingUnavailable
+        This machine cannot draw without a screen.
+    """
+    require_rendering()
+    import pyvista
+
+    surface = tessellation.surface(mesh.points + displacement)
+    extent = np.vstack([surface.points, tessellation.at_points(mesh.points)])
+    axes = best_axes(extent)
+    arrow = _arrow(field, extent, axes)
+    camera = fit(extent if arrow is None else np.vstack([extent, arrow]), axes, shape[0] / shape[1])
+    size = 2 * camera.half_height
+    nearer = 2e-3 * size * axes[2]
+
+    def lines(positions: FloatArray, triples: AnyArray) -> Any:
+        curves = tessellation.edges(positions, triples)
+        numbers = np.arange(curves[..., 0].size).reshape(curves.shape[:2])
+        cells = np.insert(numbers, 0, curves.shape[1], axis=1)
+        return pyvista.PolyData(curves.reshape(-1, 3), lines=cells.ravel())
+
+    edges = (
+        element_edges(mesh.elements)
+        if len(mesh.elements) <= MOST_ELEMENTS_WITH_EDGES
+        else mesh.boundary_edges
+    )
+    body = pyvista.PolyData.from_regular_faces(surface.points, surface.triangles)
+    body.point_data["colours"] = colours
+    body.point_data.active_normals = surface.normals
+    with pyvista.vtk_verbosity("error"):
+        plotter = pyvista.Plotter(
+            off_screen=True,
+            window_size=(OVERSAMPLING * shape[0], OVERSAMPLING * shape[1]),
+            lighting="none",
+            theme=pyvista.themes.DocumentTheme(),
+        )
+        try:
+            _light(plotter, axes)
+            plotter.add_mesh(
+                body,
+                scalars="colours",
+                rgb=True,
+                smooth_shading=True,
+                specular=0.12,
+                specular_power=20,
+                ambient=0.4,
+            )
+            thin = {"lighting": False, "line_width": 1.0 * OVERSAMPLING}
+            thick = {"lighting": False, "line_width": 1.9 * OVERSAMPLING}
+            position = mesh.points + displacement + nearer
+            plotter.add_mesh(lines(position, edges), color=INK, opacity=0.28, **thin)
+            plotter.add_mesh(lines(position, mesh.boundary_edges), color=INK, **thick)
+            plotter.add_mesh(lines(mesh.points, edges), color=PALE, opacity=0.5, **thin)
+            plotter.add_mesh(lines(mesh.points, mesh.boundary_edges), color=PALE, **thick)
+            if arrow is not None:
+                length = float(np.linalg.norm(arrow[1] - arrow[0]))
+                plotter.add_mesh(_arrow_body(arrow, length), color=ACCENT, smooth_shading=True, ambient=0.25)
+            view = plotter.camera
+            view.parallel_projection = True
+            view.focal_point = camera.centre
+            view.position = camera.centre + 20 * size * axes[2]
+            view.up = axes[1]
+            view.parallel_scale = camera.half_height
+            plotter.renderer.reset_camera_clipping_range()
+            picture = plotter.screenshot(None, return_img=True, transparent_background=True)
+        finally:
+            plotter.close()
+    return _reduce(np.asarray(picture), shape), camera, arrow
+
+
+def _arrow(field: FloatArray, extent: FloatArray, axes: FloatArray) -> FloatArray | None:
+    """Tail and head of the field arrow, to the left of everything on the picture."""
+    strength = np.linalg.norm(field)
+    if strength == 0:
+        return None
+    seen = extent @ axes.T
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    size = float(np.linalg.norm(high - low))
+    vector = 0.22 * size * field / strength
+    across = abs(vector @ axes[0]) / 2
+    middle = np.array([low[0] - 0.07 * size - across, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2]) @ axes
+    return np.stack([middle - vector / 2, middle + vector / 2])
+
+
+def _arrow_body(arrow: FloatArray, length: float) -> Any:
+    import pyvista
+
+    return pyvista.Arrow(
+        start=arrow[0],
+        direction=arrow[1] - arrow[0],
+        scale=length,
+        tip_length=0.3,
+        tip_radius=0.085,
+        shaft_radius=0.03,
+        tip_resolution=48,
+        shaft_resolution=48,
+    )
+
+
+def _light(plotter: Any, axes: FloatArray) -> None:
+    """A key light over the left shoulder, a fill light from the right and a weak one from behind."""
+    import pyvista
+
+    for direction, intensity in (((-0.5, 0.8, 1.0), 0.75), ((0.9, 0.1, 0.6), 0.35), ((0.0, -0.6, 0.8), 0.2)):
+        light = pyvista.Light(position=np.array(direction) @ axes, focal_point=(0, 0, 0), intensity=intensity)
+        light.positional = False
+        plotter.add_light(light)
+
+
+def _reduce(picture: AnyArray, shape: tuple[int, int]) -> AnyArray:
+    """Average the oversampled pixels, weighting colours with their opacity."""
+    blocks = picture.astype(float).reshape(shape[1], OVERSAMPLING, shape[0], OVERSAMPLING, 4)
+    opacity = blocks[..., 3:]
+    total = opacity.sum(axis=(1, 3))
+    colours = (blocks[..., :3] * opacity).sum(axis=(1, 3)) / np.maximum(total, 1)
+    return np.concatenate([colours, total / OVERSAMPLING**2], axis=-1).round().astype(np.uint8)

@@ -1,0 +1,149 @@
+"""The picture of the deformed shape: a three-dimensional scene with lettering set over it."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from magshell.errors import InputError
+from magshell.output.registry import Output, find
+from magshell.output.scene import draw
+from magshell.output.style import ACCENT, DPI, GREY, TEXT, TICKS, deliver
+from magshell.output.tessellation import Tessellation
+from magshell.typing import AnyArray, FloatArray
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+    from magshell.solve.path import Path, Step
+
+INCHES = (10.0, 7.0)
+SCENE = (0.0, 0.0, 0.865, 0.9)
+"""Left, bottom, width and height of the scene as fractions of the picture."""
+SHOWN_UNITS = {"m": ("mm", 1e3), "1/m": ("1/mm", 1e-3), "T": ("mT", 1e3), "J": ("µJ", 1e6)}
+LETTERS = {"h": "h/h_0", "phi": r"\varphi", "theta": r"\vartheta", "group": r"\mathrm{group}"}
+
+
+def draw_shape(
+    path: Path, file: str | os.PathLike[str] | None = "shape.png", step: int = -1, color: str = "u3"
+) -> Image | None:
+    """Draw the deformed shape, true to scale, over the undeformed outline, with the field's direction.
+
+    Parameters
+    ----------
+    path : Path
+    file : path, optional
+        PNG file to write; None to get the picture instead.
+    step : int
+        Which converged step; negative counts from the last.
+    color : str
+        Output that colours the shape: a name or symbol of `magshell.output.registry`, with 1, 2 or 3 after
+        the symbol for a component ("u3", "rotation", "thickness_ratio").
+
+    Returns
+    -------
+    PIL.Image.Image or None
+        The picture, if no file was named.
+
+    Raises
+    ------
+    InputError
+        No such step or output.
+    RenderingUnavailable
+        This machine cannot draw without a screen; the message says what to install.
+    OSError
+        The disk refuses; the message names the file.
+    """
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.figure import Figure
+
+    output, component = find(color)
+    shown = _step(path, step)
+    mesh = path.discretisation.mesh
+    tessellation = Tessellation(mesh.elements)
+    unit, factor = SHOWN_UNITS.get(output.unit, (output.unit, 1.0))
+    values = factor * _values(path, shown, output, component, tessellation)
+    colours = ScalarMappable(*_colour_scale(values))
+    rgb = colours.to_rgba(values, bytes=True)[:, :3]
+    field = shown.load_factor * path.model.field.vector
+    pixels = (round(DPI * INCHES[0] * SCENE[2]), round(DPI * INCHES[1] * SCENE[3]))
+    scene, camera, arrow = draw(mesh, tessellation, shown.state.u, rgb, field, pixels)
+
+    figure = Figure(figsize=INCHES, dpi=DPI, facecolor="white")
+    axes = figure.add_axes(SCENE)
+    axes.set_axis_off()
+    axes.imshow(scene, extent=(0, 1, 0, 1), aspect="auto", interpolation="none")
+    bar = figure.colorbar(colours, cax=figure.add_axes((0.885, 0.16, 0.022, 0.6)))
+    bar.outline.set_visible(False)
+    bar.ax.tick_params(**TICKS)
+    bar.ax.set_title(_letter(output, component) + (f" ({unit})" if unit else ""), pad=14, loc="left", **TEXT)
+    size = 1e3 * float(np.linalg.norm(field))
+    title = rf"$|B^\mathrm{{ext}}|$ = {size:.4g} mT" if size > 0 else "no field"
+    figure.text(0.035, 0.94, title, va="center", **(TEXT | {"fontsize": 20}))
+    if arrow is not None:
+        _label_arrow(axes, camera.on_picture(arrow))
+    _triad(axes, camera.axes)
+    return deliver(figure, file)
+
+
+def _step(path: Path, number: int) -> Step:
+    if not -len(path.steps) <= number < len(path.steps):
+        raise InputError(f"There is no step {number}; the path has steps 0 to {len(path.steps) - 1}.")
+    return path.steps[number]
+
+
+def _values(
+    path: Path, step: Step, output: Output, component: int | None, tessellation: Tessellation
+) -> FloatArray:
+    """The scalar shown, SI, at the points of the tessellation."""
+    values = np.asarray(output.evaluate(path.discretisation, step.state), dtype=float)
+    values = tessellation.at_points(values) if output.where == "point" else tessellation.on_elements(values)
+    if output.components == 1:
+        return values
+    return np.asarray(np.linalg.norm(values, axis=1) if component is None else values[:, component - 1])
+
+
+def _colour_scale(values: AnyArray) -> tuple[Any, Any]:
+    """Normalisation and colour map: diverging about zero where both signs matter."""
+    from matplotlib import colormaps
+    from matplotlib.colors import Normalize
+
+    low, high = float(values.min()), float(values.max())
+    largest = max(abs(low), abs(high))
+    if high - low <= 1e-9 * largest:
+        half = 0.5 * (largest or 1.0)
+        return Normalize(low - half, high + half), colormaps["viridis"]
+    if min(-low, high) > 0.1 * largest:
+        return Normalize(-largest, largest), colormaps["coolwarm"]
+    return Normalize(low, high), colormaps["viridis"]
+
+
+def _letter(output: Output, component: int | None) -> str:
+    letter = LETTERS.get(output.symbol, output.symbol)
+    if component is not None:
+        return f"${letter}_{component}$"
+    return f"$|{letter}|$" if output.components == 3 else f"${letter}$"
+
+
+def _label_arrow(axes: Any, ends: FloatArray) -> None:
+    tail, head = ends
+    beyond = 0.04 * (head - tail) / max(float(np.linalg.norm(head - tail)), 1e-9)
+    place = {"ha": "center", "va": "center", "annotation_clip": False}
+    axes.annotate(
+        r"$B^\mathrm{ext}$", head + beyond, xycoords="axes fraction", color=ACCENT, fontsize=16, **place
+    )
+
+
+def _triad(axes: Any, view: FloatArray) -> None:
+    """The directions X1, X2, X3 in the lower left corner."""
+    origin, length, beyond = np.array([62.0, 48.0]), 34.0, 11.0
+    line = {"arrowstyle": "-|>", "color": GREY, "linewidth": 1.3, "shrinkA": 0, "shrinkB": 0}
+    for i in range(3):
+        tip = length * view[:2, i]
+        axes.annotate("", origin + tip, origin, "axes points", "axes points", arrowprops=line)
+        place = origin + tip * (1 + beyond / max(float(np.linalg.norm(tip)), 1e-9))
+        axes.annotate(
+            f"$X_{i + 1}$", place, None, "axes points", ha="center", va="center", fontsize=13, color=GREY
+        )

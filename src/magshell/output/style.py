@@ -1,0 +1,41 @@
+"""The house style of pictures, and how a picture leaves."""
+
+from __future__ import annotations
+
+import io
+import os
+import pathlib
+from typing import TYPE_CHECKING, Any
+
+from magshell.output.files import write_atomically
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from PIL.Image import Image
+
+DPI = 160
+INK = "#1a1f26"
+GREY = "#4b5563"
+PALE = "#8b95a1"
+ACCENT = "#c2410c"
+COLOURS = ("#1d4ed8", ACCENT, "#15803d", "#7e22ce", "#b45309", "#0e7490", "#be185d", "#4d7c0f")
+TEXT: dict[str, Any] = {"fontsize": 15, "color": INK}
+TICKS: dict[str, Any] = {"labelsize": 13, "colors": GREY}
+
+
+def deliver(figure: Figure, file: str | os.PathLike[str] | None) -> Image | None:
+    """Write the figure as PNG if a file is named, else return it as a picture that a notebook shows.
+
+    Raises
+    ------
+    OSError
+        The disk refuses; the message names the file.
+    """
+    content = io.BytesIO()
+    figure.savefig(content, format="png")
+    if file is None:
+        from PIL import Image
+
+        return Image.open(content)
+    write_atomically(pathlib.Path(file), content.getvalue())
+    return None

@@ -1,0 +1,170 @@
+"""VTU files, one per converged step, and the PVD file that strings them together for ParaView."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+
+from magshell.output.files import naming, write_atomically
+from magshell.output.registry import OUTPUTS
+from magshell.solve.events import Observer
+
+if TYPE_CHECKING:
+    from magshell.assembly import Discretisation
+    from magshell.solve.path import Path, Step
+    from magshell.solve.settings import Settings
+
+VTK_QUADRATIC_QUAD = 23
+
+
+class VtuWriter(Observer):
+    """Write every converged step as a file of quadratic quads, which ParaView draws curved.
+
+    Points are reference positions (m): in ParaView, *Warp By Vector* with `displacement` shows the deformed
+    shape. Point and cell arrays are those of `magshell.output.registry`; their units and meaning are in the
+    field data `outputs`, `units` and `meanings`, beside `load_factor`, `step`, `flux_density` and
+    `flux_density_magnitude` (T). The time in the PVD file is the load factor.
+
+    Parameters
+    ----------
+    directory : path
+        Folder of the PVD file.
+    name : str
+        The PVD file is `NAME.pvd`.
+    folder : str
+        Folder of the VTU files, `step-0000.vtu` and so on, inside the directory. Step files that an earlier
+        run left there are removed when the solve starts.
+
+    Raises
+    ------
+    OSError
+        The disk refuses; the message names the file.
+    """
+
+    def __init__(self, directory: str | os.PathLike[str], name: str = "shell", folder: str = "steps") -> None:
+        self.file = pathlib.Path(directory) / f"{name}.pvd"
+        self._folder = folder
+
+    def started(self, discretisation: Discretisation, settings: Settings | None = None) -> None:
+        """Begin a new series."""
+        self._discretisation = discretisation
+        self._written: list[tuple[float, str]] = []
+        folder = self.file.parent / self._folder
+        with naming(folder):
+            self.file.unlink(missing_ok=True)
+            for old in folder.glob("step-[0-9][0-9][0-9][0-9]*.vtu"):
+                old.unlink(missing_ok=True)
+
+    def converged(self, step: Step) -> None:
+        """Write the step, then the series with it."""
+        name = f"{self._folder}/step-{step.number:04d}.vtu"
+        write_atomically(self.file.parent / name, _vtu(grid(self._discretisation, step)))
+        self._written.append((step.load_factor, name))
+        write_atomically(self.file, _pvd(self._written))
+
+
+def save(path: Path, file: str | os.PathLike[str]) -> None:
+    """Write a whole path: `NAME.pvd` with its step files in the folder `NAME` beside it.
+
+    Parameters
+    ----------
+    path : Path
+    file : path
+        The PVD file; another or no suffix is replaced by `.pvd`.
+
+    Raises
+    ------
+    OSError
+        The disk refuses; the message names the file.
+    """
+    target = pathlib.Path(file)
+    writer = VtuWriter(target.parent, name=target.stem, folder=target.stem)
+    writer.started(path.discretisation)
+    for step in path.steps:
+        writer.converged(step)
+
+
+def grid(discretisation: Discretisation, step: Step) -> Any:
+    """One step as a `pyvista.UnstructuredGrid`.
+
+    Parameters
+    ----------
+    discretisation : Discretisation
+    step : Step
+
+    Returns
+    -------
+    pyvista.UnstructuredGrid
+        Reference positions with every registered output.
+    """
+    import pyvista
+
+    mesh = discretisation.mesh
+    cells = np.insert(mesh.elements, 0, 8, axis=1)
+    types = np.full(len(cells), VTK_QUADRATIC_QUAD, dtype=np.uint8)
+    result = pyvista.UnstructuredGrid(cells.ravel(), types, np.array(mesh.points))
+    for output in OUTPUTS.values():
+        data = result.point_data if output.where == "point" else result.cell_data
+        data.set_array(np.array(output.evaluate(discretisation, step.state)), output.name)
+    flux_density = step.load_factor * discretisation.model.field.vector
+    result.field_data.update(
+        {
+            "load_factor": np.array([step.load_factor]),
+            "step": np.array([step.number]),
+            "flux_density": flux_density[np.newaxis],
+            "flux_density_magnitude": np.array([np.linalg.norm(flux_density)]),
+        }
+    )
+    _add_texts(result, "outputs", OUTPUTS)
+    _add_texts(result, "units", [output.unit for output in OUTPUTS.values()])
+    _add_texts(result, "meanings", [output.sentence for output in OUTPUTS.values()])
+    _add_texts(result, "element_group_names", mesh.element_groups)
+    result.point_data.active_vectors_name = "displacement"
+    return result
+
+
+def _add_texts(grid: Any, name: str, texts: Iterable[str]) -> None:
+    """Field data of texts; PyVista itself takes only ASCII, and a group's name may be anything."""
+    from vtkmodules.vtkCommonCore import vtkStringArray
+
+    array = vtkStringArray()
+    array.SetName(name)
+    for text in texts:
+        array.InsertNextValue(text)
+    grid.GetFieldData().AddArray(array)
+
+
+def _vtu(grid: Any) -> bytes:
+    """The file's content, compressed; made in memory because VTK only prints what a disk refuses."""
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
+
+    writer = vtkXMLUnstructuredGridWriter()
+    writer.SetInputData(grid)
+    writer.SetDataModeToBinary()
+    writer.SetCompressorTypeToZLib()
+    writer.WriteToOutputStringOn()
+    writer.Write()
+    return str(writer.GetOutputString()).encode()
+
+
+def _pvd(written: list[tuple[float, str]]) -> bytes:
+    lines = [
+        f'    <DataSet timestep="{load_factor!r}" part="0" file={quoteattr(name)}/>'
+        for load_factor, name in written
+    ]
+    return "\n".join(
+        [
+            '<?xml version="1.0"?>',
+            '<VTKFile type="Collection" version="0.1">',
+            "  <Collection>",
+            *lines,
+            "  </Collection>",
+            "</VTKFile>",
+            "",
+        ]
+    ).encode()

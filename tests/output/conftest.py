@@ -1,0 +1,96 @@
+"""A quarter tube bent by a formula: a body for files and pictures that needs no solve."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from magshell.magnetics.field import UniformField
+from magshell.magnetics.micropolar_couple import MicropolarCouple
+from magshell.materials import MicropolarNeoHookean
+from magshell.mesh import cylinder
+from magshell.output import rendering
+
+RADIUS, LENGTH = 10e-3, 16e-3
+PROBES = {"tip": (LENGTH, 0, RADIUS), 'edge, "low"': (LENGTH, RADIUS, 0)}
+LOADS = (0.0, 0.1, 0.3, 0.6, 1.0)
+
+
+class FakeDiscretisation:
+    """The members that output reads, as formulas."""
+
+    dofs, solver_name = 1234, "SuperLU"
+
+    def __init__(self, model, mesh):
+        self.model, self.mesh = model, mesh
+        radial = mesh.points * [0, 1, 1]
+        self.normals = radial / np.linalg.norm(radial, axis=1, keepdims=True)
+
+    def nodal_director(self, state):
+        return self.normals + state.w
+
+    def nodal_phi(self, state):
+        return state.phi
+
+    def nodal_rotation(self, state):
+        return 2 * state.q[:, 1:]
+
+    def element_remanence(self, state):
+        return np.tile([0.0, 0.0, 80e-3], (len(self.mesh.elements), 1))
+
+    def element_thickness_ratio(self, state):
+        return 1 - 20 * np.abs(state.u[self.mesh.elements]).mean(axis=(1, 2))
+
+    def element_energy(self, state):
+        return 1e-6 * np.abs(state.u[self.mesh.elements]).sum(axis=(1, 2))
+
+
+class FakePath:
+    """A path of formula states with the members that output reads."""
+
+    def __init__(self, loads=LOADS, probes=PROBES, field=(0.0, 0.0, 20e-3)):
+        mesh = cylinder(RADIUS, LENGTH, elements=(8, 6), angle=(0, 90), axis=(1, 0, 0), zero=(0, 1, 0))
+        half = len(mesh.elements) // 2
+        groups = {"lower": np.arange(half), "größer": np.arange(half, len(mesh.elements))}
+        mesh = replace(mesh, element_groups=groups)
+        self.model = SimpleNamespace(
+            field=UniformField(field),
+            coupling=MicropolarCouple(),
+            shell=SimpleNamespace(material=MicropolarNeoHookean(135e3, 3.25e6, 13.5e3, 9e-5)),
+            probe_nodes={name: mesh.node_at(position) for name, position in probes.items()},
+        )
+        self.discretisation = FakeDiscretisation(self.model, mesh)
+        self.steps = [self._step(number, load) for number, load in enumerate(loads)]
+        self.converged, self.reason = True, ""
+        self.summary = {"solver": "SuperLU", "linear_solves": np.int64(21), "cpu_seconds": 0.125}
+
+    def _step(self, number, load):
+        X = self.discretisation.mesh.points
+        s = X[:, 0] / LENGTH
+        bend = np.tanh(2 * load)
+        u = np.stack(
+            [-0.4 * LENGTH * s**3 * bend, 0.05 * X[:, 1] * s, LENGTH * s**2 * (0.8 + 20 * X[:, 2])], axis=1
+        )
+        q = np.zeros((len(u), 4))
+        q[:, 0], q[:, 2] = np.cos(bend * s / 2), -np.sin(bend * s / 2)
+        state = SimpleNamespace(u=u * bend, w=6 * u * bend, phi=-0.3 * s * bend / RADIUS, q=q)
+        iterations = 3 if number else 0
+        return SimpleNamespace(number=number, load_factor=load, state=state, iterations=iterations)
+
+
+@pytest.fixture
+def path():
+    """Five steps and two probes, one with a name that CSV must quote."""
+    return FakePath()
+
+
+@pytest.fixture(scope="session")
+def can_draw():
+    """Skip the test, saying why, where nothing three-dimensional can be drawn."""
+    try:
+        rendering.require_rendering()
+    except rendering.RenderingUnavailable as unavailable:
+        pytest.skip(str(unavailable))

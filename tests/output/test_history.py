@@ -1,0 +1,93 @@
+"""history.csv and summary.json."""
+
+from __future__ import annotations
+
+import csv
+import json
+
+import numpy as np
+import pytest
+
+from magshell.output.history import HistoryWriter
+from magshell.output.summary import write_summary
+
+
+def read(file):
+    with open(file, newline="", encoding="utf-8") as lines:
+        heading, *rows = csv.reader(lines)
+    return heading, np.array(rows, dtype=float)
+
+
+def test_history_holds_field_and_probes_exactly(path, tmp_path):
+    writer = HistoryWriter(tmp_path)
+    writer.started(path.discretisation, None)
+    for step in path.steps:
+        writer.converged(step)
+    heading, rows = read(tmp_path / "history.csv")
+    probes = [f"{name}.u{i}" for name in ("tip", 'edge, "low"') for i in (1, 2, 3)]
+    assert heading == ["load_factor", "B1", "B2", "B3", *probes]
+    loads = np.array([step.load_factor for step in path.steps])
+    expected = [loads, *np.outer([0.0, 0.0, 20e-3], loads)]
+    for node in path.model.probe_nodes.values():
+        expected += list(np.array([step.state.u[node] for step in path.steps]).T)
+    np.testing.assert_array_equal(rows, np.transpose(expected))
+
+
+def test_history_is_on_disk_after_every_step(path, tmp_path):
+    writer = HistoryWriter(tmp_path / "new")
+    writer.started(path.discretisation, None)
+    for number, step in enumerate(path.steps, start=1):
+        writer.converged(step)
+        assert len(read(tmp_path / "new" / "history.csv")[1]) == number
+
+
+def test_old_history_stays_until_the_run_starts(path, tmp_path):
+    file = tmp_path / "history.csv"
+    file.write_text("old\n")
+    writer = HistoryWriter(tmp_path)
+    assert file.read_text() == "old\n"
+    writer.started(path.discretisation, None)
+    heading, rows = read(file)
+    assert heading[0] == "load_factor"
+    assert len(rows) == 0
+
+
+def test_folder_lost_while_solving_is_an_error_with_the_file(path, tmp_path):
+    writer = HistoryWriter(tmp_path / "results")
+    writer.started(path.discretisation, None)
+    (tmp_path / "results").rename(tmp_path / "moved")
+    with pytest.raises(OSError, match=r"history\.csv"):
+        writer.converged(path.steps[0])
+
+
+def reject(constant):
+    raise AssertionError(f"{constant} is not JSON")
+
+
+def test_summary(path, tmp_path):
+    file = write_summary(path, tmp_path)
+    summary = json.loads(file.read_text(encoding="utf-8"), parse_constant=reject)
+    final = path.steps[-1].state.u
+    assert file == tmp_path / "summary.json"
+    assert summary == {
+        "solver": "SuperLU",
+        "linear_solves": 21,
+        "cpu_seconds": 0.125,
+        "converged": True,
+        "reason": "",
+        "steps": 4,
+        "iterations": 12,
+        "elements": 48,
+        "dofs": 1234,
+        "probes": {name: final[node].tolist() for name, node in path.model.probe_nodes.items()},
+    }
+
+
+def test_summary_of_a_broken_off_path(path, tmp_path):
+    path.converged, path.reason = False, "the step became too small"
+    path.summary = {"residual": np.float64("nan"), "balance": {"work": float("inf")}, "sizes": np.arange(2)}
+    summary = json.loads(write_summary(path, tmp_path).read_text(), parse_constant=reject)
+    assert (summary["converged"], summary["reason"]) == (False, "the step became too small")
+    assert (summary["residual"], summary["balance"], summary["sizes"]) == (None, {"work": None}, [0, 1])
+    interrupted = json.loads(write_summary(path, tmp_path, reason="interrupted").read_text())
+    assert interrupted["reason"] == "interrupted"
