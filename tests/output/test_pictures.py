@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ctypes.util
 import inspect
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -259,3 +261,13 @@ def test_trial_is_made_once(fresh_trial, monkeypatch):
     rendering.require_rendering()
     rendering.require_rendering()
     assert len(calls) == 1
+
+
+def test_nothing_heavy_is_imported_before_it_is_needed():
+    modules = ("history", "summary", "vtu", "pictures", "registry")
+    code = ";".join(
+        [*(f"import magshell.output.{name}" for name in modules), "import sys; print(*sys.modules)"]
+    )
+    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    loaded = {name.split(".")[0] for name in ran.stdout.split()}
+    assert not loaded & {"pyvista", "vtkmodules", "matplotlib", "PIL"}

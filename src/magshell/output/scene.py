@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from magshell.mesh import Mesh
 
 OVERSAMPLING = 2
-MARGIN = 1.04
+MARGIN = 1.06
 MOST_ELEMENTS_WITH_EDGES = 4000
 
 
@@ -121,7 +121,8 @@ def draw(
     extent = np.vstack([surface.points, tessellation.at_points(mesh.points)])
     axes = best_axes(extent)
     arrow = _arrow(field, extent, axes)
-    camera = fit(extent if arrow is None else np.vstack([extent, arrow]), axes, shape[0] / shape[1])
+    kept = extent if arrow is None else np.vstack([extent, _lettered(arrow, axes)])
+    camera = fit(kept, axes, shape[0] / shape[1])
     size = 2 * camera.half_height
     nearer = 2e-3 * size * axes[2]
 
@@ -155,7 +156,7 @@ def draw(
                 smooth_shading=True,
                 specular=0.12,
                 specular_power=20,
-                ambient=0.4,
+                ambient=0.36,
             )
             thin = {"lighting": False, "line_width": 1.0 * OVERSAMPLING}
             thick = {"lighting": False, "line_width": 1.9 * OVERSAMPLING}
@@ -166,7 +167,7 @@ def draw(
             plotter.add_mesh(lines(mesh.points, mesh.boundary_edges), color=PALE, **thick)
             if arrow is not None:
                 length = float(np.linalg.norm(arrow[1] - arrow[0]))
-                plotter.add_mesh(_arrow_body(arrow, length), color=ACCENT, smooth_shading=True, ambient=0.25)
+                plotter.add_mesh(_arrow_body(arrow, length), color=ACCENT, smooth_shading=True, ambient=0.45)
             view = plotter.camera
             view.parallel_projection = True
             view.focal_point = camera.centre
@@ -194,6 +195,14 @@ def _arrow(field: FloatArray, extent: FloatArray, axes: FloatArray) -> FloatArra
     return np.stack([middle - vector / 2, middle + vector / 2])
 
 
+def _lettered(arrow: FloatArray, axes: FloatArray) -> FloatArray:
+    """Points around the arrow that leave room for its name beyond its head."""
+    vector = arrow[1] - arrow[0]
+    aside = 0.3 * np.linalg.norm(vector) * axes[:2]
+    ends = np.stack([arrow[0], arrow[1] + 0.2 * vector])
+    return np.concatenate([ends + aside[0], ends - aside[0], ends + aside[1], ends - aside[1]])
+
+
 def _arrow_body(arrow: FloatArray, length: float) -> Any:
     import pyvista
 
@@ -213,7 +222,7 @@ def _light(plotter: Any, axes: FloatArray) -> None:
     """A key light over the left shoulder, a fill light from the right and a weak one from behind."""
     import pyvista
 
-    for direction, intensity in (((-0.5, 0.8, 1.0), 0.75), ((0.9, 0.1, 0.6), 0.35), ((0.0, -0.6, 0.8), 0.2)):
+    for direction, intensity in (((-0.5, 0.8, 1.0), 0.58), ((0.9, 0.1, 0.6), 0.2), ((0.0, -0.6, 0.8), 0.15)):
         light = pyvista.Light(position=np.array(direction) @ axes, focal_point=(0, 0, 0), intensity=intensity)
         light.positional = False
         plotter.add_light(light)
