@@ -1,7 +1,7 @@
 """Compilation of the numerical kernels: once per version of the sources, then read from a cache.
 
 Numba invalidates a cached function when *its own* file changes, not when a function that it calls does. The cache
-folder is therefore named by a digest of all sources of the package: any edit means a fresh cache.
+folder is therefore named by a digest of all sources that kernels are made of: any edit of those means a fresh cache.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from numba.extending import overload
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 # Sums may be reordered and fused (vector instructions), but NaN and infinity keep their meaning.
+KERNEL_FOLDERS = ("shell", "materials", "magnetics")
 _FASTMATH = {"reassoc", "contract", "nsz", "arcp"}
 
 
@@ -36,9 +37,10 @@ def _user_cache() -> Path:
 @cache
 def cache_directory() -> Path:
     """Folder of the compiled kernels of this version of the sources (in the temporary folder if none is writable)."""
-    digest = hashlib.sha256()
-    for source in sorted(Path(__file__).parent.rglob("*.py")):
-        digest.update(source.read_bytes())
+    digest = hashlib.sha256(Path(__file__).read_bytes())
+    for folder in KERNEL_FOLDERS:
+        for source in sorted((Path(__file__).parent / folder).rglob("*.py")):
+            digest.update(source.read_bytes())
     name = f"kernels-{digest.hexdigest()[:16]}"
     with contextlib.suppress(OSError, RuntimeError):
         folder = _user_cache() / name

@@ -35,8 +35,8 @@ ForcesAndTangent = Callable[
 ]
 AnyCoupling = TypeVar("AnyCoupling", bound=type)
 
-_energies: dict[type, MagneticEnergy | None] = {}
-_forces: dict[type, ForcesAndTangent] = {}
+energies_of: dict[type, MagneticEnergy | None] = {}
+forces_of: dict[type, ForcesAndTangent] = {}
 
 
 def forces_and_tangent(
@@ -50,12 +50,12 @@ def forces_and_tangent(
     K_ω: FloatArray,
 ) -> None:
     """Fill f, c (3,) and K_m, K_ω (3, 3) at the state m, n (T, shape (3,)) in the field B (T, shape (3,))."""
-    _forces[type(coupling)](coupling, m, n, B, f, c, K_m, K_ω)
+    forces_of[type(coupling)](coupling, m, n, B, f, c, K_m, K_ω)
 
 
 def magnetic_energy(coupling: Coupling, m: FloatArray, n: FloatArray, B: FloatArray) -> float:
     """Energy per unit reference volume, J/m³; a law without one is not conservative."""
-    energy = _energies[type(coupling)]
+    energy = energies_of[type(coupling)]
     if energy is None:
         raise ValueError(f"{type(coupling).__name__} is not conservative: it has no energy")
     return energy(coupling, m, n, B)
@@ -63,12 +63,12 @@ def magnetic_energy(coupling: Coupling, m: FloatArray, n: FloatArray, B: FloatAr
 
 def is_conservative(coupling: Coupling) -> bool:
     """Whether the law derives from an energy, so that the tangent is symmetric."""
-    return _energies[type(coupling)] is not None
+    return energies_of[type(coupling)] is not None
 
 
 def laws() -> list[type]:
     """All registered laws: every test of the battery runs over this list."""
-    return list(_forces)
+    return list(forces_of)
 
 
 def coupling_law(
@@ -77,8 +77,8 @@ def coupling_law(
     """Register a NamedTuple class of parameters with its functions; a law without energy is not conservative."""
 
     def register(cls: AnyCoupling) -> AnyCoupling:
-        _forces[cls] = forces
-        _energies[cls] = energy
+        forces_of[cls] = forces
+        energies_of[cls] = energy
         return cls
 
     return register

@@ -41,31 +41,31 @@ StrainEnergy = Callable[[Material, FloatArray], float]
 StressAndTangent = Callable[[Material, FloatArray, FloatArray, FloatArray], None]
 AnyMaterial = TypeVar("AnyMaterial", bound=type)
 
-_strain_energies: dict[type, StrainEnergy] = {}
-_stresses: dict[type, StressAndTangent] = {}
+strain_energies_of: dict[type, StrainEnergy] = {}
+stresses_of: dict[type, StressAndTangent] = {}
 
 
 def strain_energy(material: Material, U: FloatArray) -> float:
     """W(U) in J/m³, U of shape (3, 3) with positive determinant."""
-    return _strain_energies[type(material)](material, U)
+    return strain_energies_of[type(material)](material, U)
 
 
 def stress_and_tangent(material: Material, U: FloatArray, P: FloatArray, C: FloatArray) -> None:
     """Fill P = dW/dU, shape (3, 3), and C = d²W/dUdU, shape (3, 3, 3, 3), both in Pa."""
-    _stresses[type(material)](material, U, P, C)
+    stresses_of[type(material)](material, U, P, C)
 
 
 def laws() -> list[type]:
     """All registered laws: every test of the battery runs over this list."""
-    return list(_stresses)
+    return list(stresses_of)
 
 
 def material_law(energy: StrainEnergy, stress: StressAndTangent) -> Callable[[AnyMaterial], AnyMaterial]:
     """Register a NamedTuple class of parameters with its functions of U."""
 
     def register(cls: AnyMaterial) -> AnyMaterial:
-        _strain_energies[cls] = energy
-        _stresses[cls] = stress
+        strain_energies_of[cls] = energy
+        stresses_of[cls] = stress
         return cls
 
     return register

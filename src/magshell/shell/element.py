@@ -1,0 +1,233 @@
+r"""The element: points contracted with shape functions, quaternions reduced to spins, enhanced modes condensed.
+
+Everything nonlinear happens at the points (section.py), where x = G v with the same constant map G (shape functions at
+the parent points) for every element. Nodes carry quaternions, equations carry spins: q(ϑ) = exp(ϑ/2) q has the constant
+first derivative T = ∂q/∂ϑ and the second derivative -¼ δ_ab q. With T̂ the identity but for a block T per node,
+
+    r = Σ T̂ᵀGᵀ g,      K = Σ T̂ᵀGᵀ H G T̂ - ¼ (q · r_q) I on each node's spins.
+
+One function, `contract`, multiplies rows by T̂ᵀGᵀ: once for r, twice with a transposition between for Kᵀ. (Kᵀ is what
+the compressed columns of the matrix take.)
+
+The enhanced parameters α are condensed: with r_α and K_αα of the element,
+
+    K = K_vv - K_vα K_αα⁻¹ K_αv,   r = r_v - K_vα K_αα⁻¹ r_α,   Δα = -K_αα⁻¹ (r_α + K_αv Δv).
+
+Order of the element's values, component by component and node by node within: u (3 × 8), w (3 × 4), φ (4),
+q (4 × 4) or ϑ (3 × 4), α (3 × 2).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from magshell.compiled import inline
+from magshell.shell.section import ENHANCED, PHI, Q, Q1, U1, W1, W
+from magshell.shell.shape_functions import bilinear, serendipity
+from magshell.typing import FloatArray, IntArray
+
+
+class Interpolation(NamedTuple):
+    """Shape functions at the integration points.
+
+    Attributes
+    ----------
+    du : ndarray, shape (points, 2, 8)
+        Parent derivatives of the functions of u, on all nodes.
+    rest, d_rest : ndarray, shape (points, 4) and (points, 2, 4)
+        Functions of w, φ and q, on the corners, and their parent derivatives.
+    """
+
+    du: FloatArray
+    rest: FloatArray
+    d_rest: FloatArray
+
+
+def interpolation(parent: FloatArray) -> Interpolation:
+    """Functions of the paper's element: 8 nodes for u, 4 corners for the rest."""
+    rest, d_rest = bilinear(parent)
+    return Interpolation(
+        *(np.ascontiguousarray(a) for a in (serendipity(parent)[1], rest, d_rest))
+    )
+
+
+@inline
+def gather(
+    nodes: IntArray, u: FloatArray, w: FloatArray, phi: FloatArray, q: FloatArray, alpha: FloatArray, rest: int, v: FloatArray
+) -> None:
+    """Fill v with the element's values; quaternions are aligned to the first node's hemisphere."""
+    count = nodes.size
+    first = q[nodes[0]]
+    for n in range(count):
+        for i in range(3):
+            v[i * count + n] = u[nodes[n], i]
+    at = 3 * count
+    for n in range(rest):
+        node = nodes[n]
+        for i in range(3):
+            v[at + i * rest + n] = w[node, i]
+        v[at + 3 * rest + n] = phi[node]
+        dot = first[0] * q[node, 0] + first[1] * q[node, 1] + first[2] * q[node, 2] + first[3] * q[node, 3]
+        sign = -1.0 if dot < 0.0 else 1.0
+        for c in range(4):
+            v[at + (4 + c) * rest + n] = sign * q[node, c]
+    at += 8 * rest
+    modes = alpha.shape[0]
+    for m in range(modes):
+        for i in range(3):
+            v[at + i * modes + m] = alpha[m, i]
+
+
+@inline
+def point_values(shape: Interpolation, p: int, enhancement: FloatArray, v: FloatArray, x: FloatArray) -> None:
+    """x = G v at point p."""
+    count, rest, modes = shape.du.shape[2], shape.rest.shape[1], enhancement.size
+    for i in range(3):
+        s1, s2 = 0.0, 0.0
+        for n in range(count):
+            s1 += shape.du[p, 0, n] * v[i * count + n]
+            s2 += shape.du[p, 1, n] * v[i * count + n]
+        x[U1 + i], x[U1 + 3 + i] = s1, s2
+        at = 3 * count + i * rest
+        s0, s1, s2 = 0.0, 0.0, 0.0
+        for n in range(rest):
+            s0 += shape.rest[p, n] * v[at + n]
+            s1 += shape.d_rest[p, 0, n] * v[at + n]
+            s2 += shape.d_rest[p, 1, n] * v[at + n]
+        x[W + i], x[W1 + i], x[W1 + 3 + i] = s0, s1, s2
+        s0 = 0.0
+        for m in range(modes):
+            s0 += enhancement[m] * v[3 * count + 8 * rest + i * modes + m]
+        x[ENHANCED + i] = s0
+    at = 3 * count + 3 * rest
+    s0 = 0.0
+    for n in range(rest):
+        s0 += shape.rest[p, n] * v[at + n]
+    x[PHI] = s0
+    for c in range(4):
+        at = 3 * count + (4 + c) * rest
+        s0, s1, s2 = 0.0, 0.0, 0.0
+        for n in range(rest):
+            s0 += shape.rest[p, n] * v[at + n]
+            s1 += shape.d_rest[p, 0, n] * v[at + n]
+            s2 += shape.d_rest[p, 1, n] * v[at + n]
+        x[Q + c], x[Q1 + c], x[Q1 + 4 + c] = s0, s1, s2
+
+
+@inline
+def spin_derivatives(v: FloatArray, count: int, rest: int, T: FloatArray) -> None:
+    """Fill T (rest, 4, 3): ∂(exp(ϑ/2) q)/∂ϑ at ϑ = 0 of each node's quaternion in v."""
+    at = 3 * count + 4 * rest
+    for n in range(rest):
+        q0, q1, q2, q3 = v[at + n], v[at + rest + n], v[at + 2 * rest + n], v[at + 3 * rest + n]
+        T[n, 0, 0], T[n, 0, 1], T[n, 0, 2] = -0.5 * q1, -0.5 * q2, -0.5 * q3
+        T[n, 1, 0], T[n, 1, 1], T[n, 1, 2] = 0.5 * q0, 0.5 * q3, -0.5 * q2
+        T[n, 2, 0], T[n, 2, 1], T[n, 2, 2] = -0.5 * q3, 0.5 * q0, 0.5 * q1
+        T[n, 3, 0], T[n, 3, 1], T[n, 3, 2] = 0.5 * q2, -0.5 * q1, 0.5 * q0
+
+
+@inline
+def contract(
+    shape: Interpolation, p: int, enhancement: FloatArray, T: FloatArray, H: FloatArray, scratch: FloatArray, out: FloatArray
+) -> None:
+    """out += T̂ᵀGᵀ H at point p: rows of the point (31) become rows of the element, whatever the columns are."""
+    count, rest, modes, width = shape.du.shape[2], shape.rest.shape[1], enhancement.size, H.shape[1]
+    for i in range(3):
+        h1, h2 = H[U1 + i], H[U1 + 3 + i]
+        for n in range(count):
+            row, a1, a2 = out[i * count + n], shape.du[p, 0, n], shape.du[p, 1, n]
+            for j in range(width):
+                row[j] += a1 * h1[j] + a2 * h2[j]
+        h, h1, h2 = H[W + i], H[W1 + i], H[W1 + 3 + i]
+        for n in range(rest):
+            row, a, a1, a2 = out[3 * count + i * rest + n], shape.rest[p, n], shape.d_rest[p, 0, n], shape.d_rest[p, 1, n]
+            for j in range(width):
+                row[j] += a * h[j] + a1 * h1[j] + a2 * h2[j]
+        h = H[ENHANCED + i]
+        for m in range(modes):
+            row, a = out[3 * count + 7 * rest + i * modes + m], enhancement[m]
+            for j in range(width):
+                row[j] += a * h[j]
+    at = 3 * count + 4 * rest
+    for n in range(rest):
+        row, a, a1, a2 = out[at - rest + n], shape.rest[p, n], shape.d_rest[p, 0, n], shape.d_rest[p, 1, n]
+        h = H[PHI]
+        for j in range(width):
+            row[j] += a * h[j]
+        for c in range(4):
+            row, h, h1, h2 = scratch[c], H[Q + c], H[Q1 + c], H[Q1 + 4 + c]
+            for j in range(width):
+                row[j] = a * h[j] + a1 * h1[j] + a2 * h2[j]
+        s0, s1, s2, s3 = scratch[0], scratch[1], scratch[2], scratch[3]
+        for i in range(3):
+            row, t0, t1, t2, t3 = out[at + i * rest + n], T[n, 0, i], T[n, 1, i], T[n, 2, i], T[n, 3, i]
+            for j in range(width):
+                row[j] += t0 * s0[j] + t1 * s1[j] + t2 * s2[j] + t3 * s3[j]
+
+
+@inline
+def add_radial_force(shape: Interpolation, p: int, g: FloatArray, v: FloatArray, radial: FloatArray) -> None:
+    """radial (rest,) += q · r_q of each node, from the gradient g at point p."""
+    count, rest = shape.du.shape[2], shape.rest.shape[1]
+    for c in range(4):
+        at = 3 * count + (4 + c) * rest
+        for n in range(rest):
+            r = shape.rest[p, n] * g[Q + c] + shape.d_rest[p, 0, n] * g[Q1 + c] + shape.d_rest[p, 1, n] * g[Q1 + 4 + c]
+            radial[n] += v[at + n] * r
+
+
+@inline
+def transpose(A: FloatArray, out: FloatArray) -> None:
+    """Fill out with the first rows of Aᵀ."""
+    for i in range(A.shape[0]):
+        for j in range(out.shape[0]):
+            out[j, i] = A[i, j]
+
+
+@inline
+def condense(Kt: FloatArray, r: FloatArray, size: int, gain: FloatArray, offset: FloatArray, factor: FloatArray) -> bool:
+    """Eliminate the unknowns from `size` on: Kᵀ and r condensed in place, Δα = -offset - gain Δv.
+
+    Gauss–Jordan with pivoting on [K_αα | K_αv | r_α], in `factor`; False where K_αα is singular.
+    """
+    modes = Kt.shape[0] - size
+    width = modes + size + 1
+    for a in range(modes):
+        for b in range(modes):
+            factor[a, b] = Kt[size + b, size + a]
+        for j in range(size):
+            factor[a, modes + j] = Kt[j, size + a]
+        factor[a, modes + size] = r[size + a]
+    for a in range(modes):
+        pivot = a
+        for b in range(a + 1, modes):
+            if abs(factor[b, a]) > abs(factor[pivot, a]):
+                pivot = b
+        if not abs(factor[pivot, a]) > 0.0:
+            return False
+        if pivot != a:
+            for j in range(width):
+                factor[a, j], factor[pivot, j] = factor[pivot, j], factor[a, j]
+        top, scale = factor[a], 1.0 / factor[a, a]
+        for j in range(width):
+            top[j] *= scale
+        for b in range(modes):
+            if b != a:
+                row, f = factor[b], factor[b, a]
+                for j in range(width):
+                    row[j] -= f * top[j]
+    for a in range(modes):
+        row = Kt[size + a]
+        offset[a] = factor[a, modes + size]
+        for j in range(size):
+            gain[a, j] = factor[a, modes + j]
+            r[j] -= row[j] * offset[a]
+    for j in range(size):
+        row = Kt[j]
+        for a in range(modes):
+            eliminated, f = Kt[size + a], gain[a, j]
+            for i in range(size):
+                row[i] -= f * eliminated[i]
+    return True

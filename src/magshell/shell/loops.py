@@ -1,0 +1,329 @@
+"""Loops over the elements: residual and tangent, enhanced parameters, predicted stresses.
+
+Nodal arrays have ten columns: u (3), w (3), φ, spin ϑ (3); a column that a node does not carry stays zero.
+Rows and columns of nodes with a frame of their own (oblique supports) are turned into that frame.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from magshell.compiled import inline, jit
+from magshell.magnetics.law import Coupling
+from magshell.materials.law import Material
+from magshell.shell.element import (
+    Interpolation,
+    add_radial_force,
+    condense,
+    contract,
+    gather,
+    point_values,
+    spin_derivatives,
+    transpose,
+)
+from magshell.shell.geometry import SectionGeometry
+from magshell.shell.section import SIZE, predicted_stress, section, workspace
+from magshell.typing import FloatArray, IntArray
+
+COMPONENTS = 10
+KINDS = ("u", "w", "phi", "omega", "alpha")
+
+
+class Body(NamedTuple):
+    """The undeformed shell, as arrays.
+
+    Attributes
+    ----------
+    elements : ndarray, shape (elements, 8)
+    geometry : SectionGeometry
+    shape : Interpolation
+    remanence : ndarray, shape (elements, points, 3)
+        T.
+    """
+
+    elements: IntArray
+    geometry: SectionGeometry
+    shape: Interpolation
+    remanence: FloatArray
+
+
+class Values(NamedTuple):
+    """A state, as arrays: u (nodes, 3), w (nodes, 3), phi (nodes,), q (nodes, 4), alpha (elements, modes, 3)."""
+
+    u: FloatArray
+    w: FloatArray
+    phi: FloatArray
+    q: FloatArray
+    alpha: FloatArray
+
+
+class Stresses(NamedTuple):
+    """Stresses of the geometric part at every point: P (e, p, k, 3, 3) in Pa and kappa (e, p, 2, 3) in rad."""
+
+    P: FloatArray
+    kappa: FloatArray
+
+
+class Equations(NamedTuple):
+    """Where an element's values go.
+
+    Attributes
+    ----------
+    local_node, local_component : ndarray, shape (values,)
+        Node of the element and column of the nodal arrays of each of the element's values.
+    number : ndarray, shape (nodes, 10)
+        Equation, -1 where fixed or absent.
+    rank : ndarray, shape (nodes, 10)
+        Equation minus the node's first one.
+    indptr : ndarray, shape (equations + 1,)
+        Column pointers of the matrix.
+    offset : ndarray, shape (elements, 8, 8)
+        Position of the first row of node I in the columns of node J, at [e, J, I].
+    frame_of : ndarray, shape (nodes, 3)
+        Frame of the node's u, w and spin, -1 for the global one.
+    frames : ndarray, shape (frames, 3, 3)
+        Rows are the frame's base vectors.
+    """
+
+    local_node: IntArray
+    local_component: IntArray
+    number: IntArray
+    rank: IntArray
+    indptr: IntArray
+    offset: IntArray
+    frame_of: IntArray
+    frames: FloatArray
+
+
+class Assembled(NamedTuple):
+    """What `assemble` fills.
+
+    Attributes
+    ----------
+    data : ndarray, shape (nonzeros,)
+        Values of the condensed tangent, compressed columns.
+    residual : ndarray, shape (nodes, 10)
+        Internal minus external forces.
+    condensed : ndarray, shape (nodes, 10)
+        The same after the elimination of α, plus the tangent's product with the imposed increments.
+    gain : ndarray, shape (elements, 3 modes, values)
+    offset : ndarray, shape (elements, 3 modes)
+        Δα = -offset - gain Δv.
+    scale : ndarray, shape (5, 3)
+        By kind: sums of squares of the elements' internal forces, of their magnetic forces, and (α) of residuals.
+    """
+
+    data: FloatArray
+    residual: FloatArray
+    condensed: FloatArray
+    gain: FloatArray
+    offset: FloatArray
+    scale: FloatArray
+
+
+@inline
+def _turn_rows(nodes: IntArray, equations: Equations, rest: int, rows: FloatArray) -> None:
+    """Rotate the rows of each node's vectors into the node's own frame."""
+    count, width = nodes.size, rows.shape[1]
+    for n in range(count):
+        for field in range(3):
+            frame = equations.frame_of[nodes[n], field]
+            if frame < 0 or (field > 0 and n >= rest):
+                continue
+            R = equations.frames[frame]
+            stride = count if field == 0 else rest
+            at = n if field == 0 else 3 * count + n if field == 1 else 3 * count + 4 * rest + n
+            for j in range(width):
+                a0, a1, a2 = rows[at, j], rows[at + stride, j], rows[at + 2 * stride, j]
+                for i in range(3):
+                    rows[at + i * stride, j] = R[i, 0] * a0 + R[i, 1] * a1 + R[i, 2] * a2
+
+
+@inline
+def _scatter_tangent(
+    e: int,
+    nodes: IntArray,
+    equations: Equations,
+    Kt: FloatArray,
+    imposed: FloatArray,
+    row_position: IntArray,
+    data: FloatArray,
+    condensed: FloatArray,
+) -> None:
+    """Add the element's tangent to the matrix, and its product with imposed increments to `condensed`."""
+    size = equations.local_node.size
+    for column in range(size):
+        J, component = equations.local_node[column], equations.local_component[column]
+        number = equations.number[nodes[J], component]
+        K_column = Kt[column]
+        if number >= 0:
+            start, offset = equations.indptr[number], equations.offset[e, J]
+            for row in range(size):
+                position = row_position[row]
+                if position >= 0:
+                    data[start + offset[equations.local_node[row]] + position] += K_column[row]
+        elif imposed[nodes[J], component] != 0.0:
+            for row in range(size):
+                I, row_component = equations.local_node[row], equations.local_component[row]
+                condensed[nodes[I], row_component] += K_column[row] * imposed[nodes[J], component]
+
+
+@jit
+def assemble(
+    material: Material,
+    couple_modulus: float,
+    coupling: Coupling,
+    B: FloatArray,
+    body: Body,
+    state: Values,
+    stresses: Stresses,
+    mixed: bool,
+    tangent: bool,
+    imposed: FloatArray,
+    equations: Equations,
+    out: Assembled,
+) -> tuple[int, float]:
+    """Residual and, with `tangent`, the condensed tangent; returns the first inverted element (or -1) and det F there."""
+    shape, geometry = body.shape, body.geometry
+    points, count, rest = shape.du.shape[0], shape.du.shape[2], shape.rest.shape[1]
+    modes = geometry.enhancement.shape[2]
+    full, size = 3 * count + 8 * rest + 3 * modes, 3 * count + 7 * rest + 3 * modes
+    nodal = size - 3 * modes
+    spins = 3 * count + 4 * rest
+    v, x, w, T, radial = np.zeros(full), np.zeros(SIZE), workspace(), np.zeros((rest, 4, 3)), np.zeros(rest)
+    g, g_mixed, H = np.zeros((SIZE, 2)), np.zeros(SIZE), np.zeros((SIZE, SIZE))
+    scratch, scratch_2 = np.zeros((4, size)), np.zeros((4, 2))
+    GH, HG, Kt, r = np.zeros((size, SIZE)), np.zeros((SIZE, size)), np.zeros((size, size)), np.zeros((size, 2))
+    r_sum, factor = np.zeros(size), np.zeros((3 * modes, 3 * modes + nodal + 1))
+    row_position = np.zeros(nodal, dtype=np.int64)
+    kind_of = equations.local_component
+    if tangent:
+        out.data[:] = 0.0
+        out.condensed[:, :] = 0.0
+    out.residual[:, :] = 0.0
+    out.scale[:, :] = 0.0
+    for e in range(len(body.elements)):
+        nodes = body.elements[e]
+        gather(nodes, state.u, state.w, state.phi, state.q, state.alpha[e], rest, v)
+        spin_derivatives(v, count, rest, T)
+        r[:, :] = 0.0
+        Kt[:, :] = 0.0
+        radial[:] = 0.0
+        for p in range(points):
+            modes_here = geometry.enhancement[e, p]
+            point_values(shape, p, modes_here, v, x)
+            J = section(
+                material, couple_modulus, coupling, B, geometry, body.remanence, e, p, x,
+                stresses.P[e, p], stresses.kappa[e, p], mixed, tangent, w, g, g_mixed, H,
+            )  # fmt: skip
+            if not J > 0.0:
+                return e, J
+            contract(shape, p, modes_here, T, g, scratch_2, r)
+            if tangent:
+                GH[:, :] = 0.0
+                contract(shape, p, modes_here, T, H, scratch, GH)
+                transpose(GH, HG)
+                contract(shape, p, modes_here, T, HG, scratch, Kt)
+                add_radial_force(shape, p, g_mixed, v, radial)
+        for l in range(nodal):
+            c = kind_of[l]
+            kind = 0 if c < 3 else 1 if c < 6 else 2 if c == 6 else 3
+            out.scale[kind, 0] += r[l, 0] ** 2
+            out.scale[kind, 1] += r[l, 1] ** 2
+        for l in range(size):
+            r_sum[l] = r[l, 0] + r[l, 1]
+        for l in range(nodal, size):
+            out.scale[4, 0] += r[l, 0] ** 2
+            out.scale[4, 2] += r_sum[l] ** 2
+        if tangent:
+            for n in range(rest):
+                for i in range(3):
+                    Kt[spins + i * rest + n, spins + i * rest + n] -= 0.25 * radial[n]
+            for l in range(size):
+                r[l, 0] = r_sum[l]
+            if not condense(Kt, r_sum, nodal, out.gain[e], out.offset[e], factor):
+                return e, 0.0
+            for l in range(size):
+                r[l, 1] = r_sum[l]
+            _turn_rows(nodes, equations, rest, Kt)
+            _turn_rows(nodes, equations, rest, Kt.T)
+        else:
+            for l in range(size):
+                r[l, 0] = r_sum[l]
+        _turn_rows(nodes, equations, rest, r)
+        for l in range(nodal):
+            out.residual[nodes[equations.local_node[l]], kind_of[l]] += r[l, 0]
+        if tangent:
+            for l in range(nodal):
+                node, c = nodes[equations.local_node[l]], kind_of[l]
+                row_position[l] = equations.rank[node, c] if equations.number[node, c] >= 0 else -1
+                out.condensed[node, c] += r[l, 1]
+            _scatter_tangent(e, nodes, equations, Kt, imposed, row_position, out.data, out.condensed)
+    return -1, 1.0
+
+
+@inline
+def _gather_increment(nodes: IntArray, increment: FloatArray, count: int, rest: int, dv: FloatArray) -> None:
+    """Fill dv with an element's nodal increments, spins at the end."""
+    for n in range(count):
+        for i in range(3):
+            dv[i * count + n] = increment[nodes[n], i]
+    for n in range(rest):
+        for i in range(3):
+            dv[3 * count + i * rest + n] = increment[nodes[n], 3 + i]
+            dv[3 * count + (4 + i) * rest + n] = increment[nodes[n], 7 + i]
+        dv[3 * count + 3 * rest + n] = increment[nodes[n], 6]
+
+
+@jit
+def recover_enhancement(
+    elements: IntArray, rest: int, increment: FloatArray, gain: FloatArray, offset: FloatArray, d_alpha: FloatArray
+) -> None:
+    """Fill Δα (elements, modes, 3) = -offset - gain Δv."""
+    count, modes = elements.shape[1], d_alpha.shape[1]
+    dv = np.zeros(3 * count + 7 * rest)
+    for e in range(len(elements)):
+        _gather_increment(elements[e], increment, count, rest, dv)
+        for m in range(modes):
+            for i in range(3):
+                a = i * modes + m
+                s = offset[e, a]
+                for l in range(dv.size):
+                    s += gain[e, a, l] * dv[l]
+                d_alpha[e, m, i] = -s
+
+
+@jit
+def predict_stresses(
+    material: Material, body: Body, state: Values, increment: FloatArray, d_alpha: FloatArray, stresses: Stresses
+) -> None:
+    """Fill the stresses predicted linearly from `state` for a nodal increment (nodes, 10) and Δα."""
+    shape, geometry = body.shape, body.geometry
+    points, count, rest = shape.du.shape[0], shape.du.shape[2], shape.rest.shape[1]
+    modes = geometry.enhancement.shape[2]
+    full = 3 * count + 8 * rest + 3 * modes
+    v, dv, spins = np.zeros(full), np.zeros(full), np.zeros(3 * count + 7 * rest)
+    x, dx, w, T = np.zeros(SIZE), np.zeros(SIZE), workspace(), np.zeros((rest, 4, 3))
+    at = 3 * count + 4 * rest
+    for e in range(len(body.elements)):
+        nodes = body.elements[e]
+        gather(nodes, state.u, state.w, state.phi, state.q, state.alpha[e], rest, v)
+        _gather_increment(nodes, increment, count, rest, spins)
+        for l in range(at):
+            dv[l] = spins[l]
+        spin_derivatives(v, count, rest, T)
+        for n in range(rest):
+            for c in range(4):
+                s = 0.0
+                for i in range(3):
+                    s += T[n, c, i] * spins[at + i * rest + n]
+                dv[at + c * rest + n] = s
+        for m in range(modes):
+            for i in range(3):
+                dv[at + 4 * rest + i * modes + m] = d_alpha[e, m, i]
+        for p in range(points):
+            point_values(shape, p, geometry.enhancement[e, p], v, x)
+            point_values(shape, p, geometry.enhancement[e, p], dv, dx)
+            predicted_stress(material, geometry, e, p, x, dx, w, stresses.P[e, p], stresses.kappa[e, p])

@@ -1,0 +1,77 @@
+"""Shape functions on the parent square [-1, 1]² and Gauss–Legendre rules.
+
+Node order: corners counter-clockwise from (-1, -1), then mid-sides starting between corners 1 and 2.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from magshell.typing import FloatArray
+
+CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+MID_SIDES = np.array([[0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]])
+NODES = np.vstack([CORNERS, MID_SIDES])
+
+
+def bilinear(parent: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Four-node functions and parent derivatives at points (n, 2).
+
+    Returns
+    -------
+    values : ndarray, shape (n, 4)
+    derivatives : ndarray, shape (n, 2, 4)
+    """
+    xi, eta = parent[:, :1], parent[:, 1:]
+    xi_i, eta_i = CORNERS.T
+    values = 0.25 * (1 + xi * xi_i) * (1 + eta * eta_i)
+    derivatives = 0.25 * np.stack([xi_i * (1 + eta * eta_i), eta_i * (1 + xi * xi_i)], axis=1)
+    return values, derivatives
+
+
+def serendipity(parent: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Eight-node functions, first and second parent derivatives at points (n, 2).
+
+    Returns
+    -------
+    values : ndarray, shape (n, 8)
+    derivatives : ndarray, shape (n, 2, 8)
+    second_derivatives : ndarray, shape (n, 3, 8)
+        With respect to (xi, xi), (eta, eta), (xi, eta).
+    """
+    xi, eta = parent[:, :1], parent[:, 1:]
+    a, b = CORNERS.T
+    corner = 0.25 * (1 + a * xi) * (1 + b * eta) * (a * xi + b * eta - 1)
+    corner_xi = 0.25 * a * (1 + b * eta) * (2 * a * xi + b * eta)
+    corner_eta = 0.25 * b * (1 + a * xi) * (2 * b * eta + a * xi)
+    corner_xi_xi = 0.5 * (1 + b * eta) + 0 * xi
+    corner_eta_eta = 0.5 * (1 + a * xi) + 0 * eta
+    corner_xi_eta = 0.25 * a * b * (2 * a * xi + 2 * b * eta + 1)
+
+    count = len(parent)
+    values, derivatives, second = np.empty((count, 8)), np.empty((count, 2, 8)), np.zeros((count, 3, 8))
+    values[:, :4] = corner
+    derivatives[:, 0, :4], derivatives[:, 1, :4] = corner_xi, corner_eta
+    second[:, 0, :4], second[:, 1, :4], second[:, 2, :4] = corner_xi_xi, corner_eta_eta, corner_xi_eta
+    xi, eta = xi[:, 0], eta[:, 0]
+    for node, (a_m, b_m) in enumerate(MID_SIDES, start=4):
+        if a_m == 0.0:
+            values[:, node] = 0.5 * (1 - xi**2) * (1 + b_m * eta)
+            derivatives[:, 0, node] = -xi * (1 + b_m * eta)
+            derivatives[:, 1, node] = 0.5 * b_m * (1 - xi**2)
+            second[:, 0, node] = -(1 + b_m * eta)
+            second[:, 2, node] = -b_m * xi
+        else:
+            values[:, node] = 0.5 * (1 + a_m * xi) * (1 - eta**2)
+            derivatives[:, 0, node] = 0.5 * a_m * (1 - eta**2)
+            derivatives[:, 1, node] = -eta * (1 + a_m * xi)
+            second[:, 1, node] = -(1 + a_m * xi)
+            second[:, 2, node] = -a_m * eta
+    return values, derivatives, second
+
+
+def gauss_legendre(count: int) -> tuple[FloatArray, FloatArray]:
+    """Tensor rule of count × count points: parent points (count², 2) and weights (count²,)."""
+    points, weights = np.polynomial.legendre.leggauss(count)
+    xi, eta = np.meshgrid(points, points, indexing="ij")
+    return np.column_stack([xi.ravel(), eta.ravel()]), np.outer(weights, weights).ravel()
