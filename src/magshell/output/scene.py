@@ -156,7 +156,7 @@ def draw(
                 smooth_shading=True,
                 specular=0.12,
                 specular_power=20,
-                ambient=0.36,
+                ambient=0.58,
             )
             thin = {"lighting": False, "line_width": 1.0 * OVERSAMPLING}
             thick = {"lighting": False, "line_width": 1.9 * OVERSAMPLING}
@@ -167,7 +167,7 @@ def draw(
             plotter.add_mesh(lines(mesh.points, mesh.boundary_edges), color=PALE, **thick)
             if arrow is not None:
                 length = float(np.linalg.norm(arrow[1] - arrow[0]))
-                plotter.add_mesh(_arrow_body(arrow, length), color=ACCENT, smooth_shading=True, ambient=0.45)
+                plotter.add_mesh(_arrow_body(arrow, length), color=ACCENT, smooth_shading=True, ambient=0.6)
             view = plotter.camera
             view.parallel_projection = True
             view.focal_point = camera.centre
@@ -219,10 +219,13 @@ def _arrow_body(arrow: FloatArray, length: float) -> Any:
 
 
 def _light(plotter: Any, axes: FloatArray) -> None:
-    """A key light over the left shoulder, a fill light from the right and a weak one from behind."""
+    """A key light over the left shoulder, one from the eye and a weak one from the right.
+
+    With the body's ambient part they add up to about one, so that colours stay those of the colour bar.
+    """
     import pyvista
 
-    for direction, intensity in (((-0.5, 0.8, 1.0), 0.58), ((0.9, 0.1, 0.6), 0.2), ((0.0, -0.6, 0.8), 0.15)):
+    for direction, intensity in (((-0.5, 0.8, 1.0), 0.28), ((0.0, 0.0, 1.0), 0.22), ((0.9, 0.1, 0.6), 0.1)):
         light = pyvista.Light(position=np.array(direction) @ axes, focal_point=(0, 0, 0), intensity=intensity)
         light.positional = False
         plotter.add_light(light)
