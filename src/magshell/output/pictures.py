@@ -28,7 +28,8 @@ def draw_pictures(path: Path, directory: str | os.PathLike[str]) -> list[pathlib
     Returns
     -------
     list of pathlib.Path or str
-        The files; for a picture that this machine cannot draw, a sentence that says why and what to install.
+        The files; for a picture that this machine cannot draw, a sentence that says why and what to install
+        (one left by an earlier run is then removed).
 
     Raises
     ------
@@ -42,5 +43,6 @@ def draw_pictures(path: Path, directory: str | os.PathLike[str]) -> list[pathlib
             draw(path, file)
             results.append(file)
         except RenderingUnavailable as unavailable:
+            file.unlink(missing_ok=True)
             results.append(str(unavailable))
     return results

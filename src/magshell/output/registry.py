@@ -17,7 +17,7 @@ from magshell.typing import AnyArray
 
 if TYPE_CHECKING:
     from magshell.assembly import Discretisation
-    from magshell.solve.state import State
+    from magshell.shell.state import State
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from magshell.shell.shape_functions import serendipity
 from magshell.typing import FloatArray, IntArray
 
-CORNERS = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
 SIDES = np.array([[0, 4, 1], [1, 5, 2], [2, 6, 3], [3, 7, 0]])
 
 
@@ -25,38 +25,6 @@ class Surface(NamedTuple):
     """(elements·lattice, 3), of unit length"""
     triangles: IntArray
     """(triangles, 3) point numbers"""
-
-
-def shape_functions(xi: FloatArray, eta: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Serendipity functions of the 8-node quad.
-
-    Parameters
-    ----------
-    xi, eta : FloatArray, shape (m,)
-        Parent coordinates in [-1, 1].
-
-    Returns
-    -------
-    FloatArray, shape (m, 8)
-        Values.
-    FloatArray, shape (2, m, 8)
-        Derivatives with respect to ξ and η.
-    """
-    N = np.empty((len(xi), 8))
-    dN = np.empty((2, len(xi), 8))
-    for i, (a, b) in enumerate(CORNERS):
-        N[:, i] = (1 + a * xi) * (1 + b * eta) * (a * xi + b * eta - 1) / 4
-        dN[0, :, i] = a * (1 + b * eta) * (2 * a * xi + b * eta) / 4
-        dN[1, :, i] = b * (1 + a * xi) * (2 * b * eta + a * xi) / 4
-    for i, b in ((4, -1), (6, 1)):
-        N[:, i] = (1 - xi**2) * (1 + b * eta) / 2
-        dN[0, :, i] = -xi * (1 + b * eta)
-        dN[1, :, i] = b * (1 - xi**2) / 2
-    for i, a in ((5, 1), (7, -1)):
-        N[:, i] = (1 + a * xi) * (1 - eta**2) / 2
-        dN[0, :, i] = a * (1 - eta**2) / 2
-        dN[1, :, i] = -eta * (1 + a * xi)
-    return N, dN
 
 
 class Tessellation:
@@ -74,12 +42,12 @@ class Tessellation:
         self._pieces = pieces or max(1, min(6, int(600 / len(elements) ** 0.5)))
         ticks = np.linspace(-1, 1, self._pieces + 1)
         eta, xi = np.meshgrid(ticks, ticks, indexing="ij")
-        self._N, self._dN = shape_functions(xi.ravel(), eta.ravel())
+        self._N, self._dN, _ = serendipity(np.column_stack([xi.ravel(), eta.ravel()]))
 
     def surface(self, positions: FloatArray) -> Surface:
         """The surface through nodes at these positions, shape (nodes, 3)."""
         x = positions[self._elements]
-        tangents = np.einsum("amn,enk->aemk", self._dN, x)
+        tangents = np.einsum("man,enk->aemk", self._dN, x)
         normals = np.cross(tangents[0], tangents[1]).reshape(-1, 3)
         lengths = np.linalg.norm(normals, axis=1, keepdims=True)
         normals /= np.where(lengths > 0, lengths, 1)
