@@ -164,8 +164,8 @@ def _wrong_unit(found: str, dimension: Dimension) -> str:
     names = list(dimension.units)
     near = [name for name in names if name.casefold() == found.casefold()]
     near = near or difflib.get_close_matches(found, names, n=1, cutoff=0.5)
-    hint = f"did you mean '{near[0]}'? " if near else ""
-    return f"has the unknown unit '{_short(found)}'; {hint}(units of {dimension.name}: {dimension.allowed})"
+    hint = f"; did you mean '{near[0]}'?" if near else ""
+    return f"has the unknown unit '{_short(found)}'{hint} (units of {dimension.name}: {dimension.allowed})"
 
 
 def _example(dimension: Dimension) -> str:

@@ -14,10 +14,11 @@ from magshell.magnetics import UniformField, remanence
 from magshell.magnetics.remanence import Remanence
 from magshell.materials import Material
 from magshell.mesh import Mesh, blocks, cylinder, rectangle, sphere_patch
-from magshell.model import Clamp, Model, Prescribe, Shell, SimpleSupport, Support, SymmetryPlane
+from magshell.model import Model, Shell
 from magshell.problem import schema
 from magshell.problem.schema import ProblemFile
 from magshell.solve.settings import Settings
+from magshell.supports import Clamp, Prescribe, SimpleSupport, Support, SymmetryPlane
 
 MOST_ELEMENTS = 1_000_000
 
@@ -74,7 +75,6 @@ def build(file: ProblemFile, source: str) -> Problem:
             material=_material(file.material, file.shell.thickness),
             remanence=_remanence(file.remanence, mesh),
         )
-        _something_loads(file)
         field = UniformField(file.field.flux_density, file.field.stops)
         supports = _supports(file.supports, mesh)
         _probes_exist(file.probes, mesh)
@@ -121,8 +121,8 @@ def _generated(table: schema.Mesh) -> Mesh:
             _bounded(table.elements)
             return sphere_patch(table.radius, table.polar, table.azimuth, table.elements)
         case schema.Blocks():
-            divisions = {name: block.elements or table.elements for name, block in table.blocks.items()}
-            _bounded(*(each for each in divisions.values() if each is not None))
+            divisions = {name: table.divisions(name) for name in table.blocks}
+            _bounded(*divisions.values())
             spatial = any(len(corner) == 3 for block in table.blocks.values() for corner in block.corners)
             corners = {
                 name: np.array([[*corner, 0.0][: 3 if spatial else 2] for corner in block.corners])
@@ -212,14 +212,6 @@ def _probes_exist(probes: Mapping[str, tuple[float, float, float]], mesh: Mesh) 
     for name, position in probes.items():
         with _at(f"probes.{name}"):
             mesh.node_at(position)
-
-
-def _something_loads(file: ProblemFile) -> None:
-    prescribed = any(isinstance(table, schema.PrescribeTable) and table.value for table in file.supports)
-    if not any(file.field.flux_density) and not prescribed:
-        raise InputError(
-            "field.flux_density: is zero and no support prescribes a value: nothing loads the shell"
-        )
 
 
 def _listed(mesh: Mesh) -> str:

@@ -79,6 +79,19 @@ def _one_or_more(value: object) -> object:
     return [value] if isinstance(value, str) else value
 
 
+def not_empty(value: object) -> object:
+    """A list or table that must hold something."""
+    if value in ([], {}):
+        raise InputError("is empty; it needs at least one entry")
+    return value
+
+
+def _not_negative(value: float) -> float:
+    if value < 0.0:
+        raise InputError("is negative; it must be zero or positive")
+    return value
+
+
 def _nonzero(value: tuple[float, float, float]) -> tuple[float, float, float]:
     if not any(value):
         raise InputError("is the zero vector; it must have a direction")
@@ -95,7 +108,7 @@ def _printable(value: object) -> str:
 
 Length = Annotated[float, _quantity(units.LENGTH)]
 PositiveLength = Annotated[float, _positive_quantity(units.LENGTH)]
-Stress = Annotated[float, _quantity(units.STRESS)]
+NonNegativeStress = Annotated[float, _quantity(units.STRESS), AfterValidator(_not_negative)]
 PositiveStress = Annotated[float, _positive_quantity(units.STRESS)]
 FluxDensity = Annotated[float, _quantity(units.FLUX_DENSITY)]
 PositiveFluxDensity = Annotated[float, _positive_quantity(units.FLUX_DENSITY)]
@@ -125,6 +138,11 @@ Corners = Annotated[tuple[Corner, Corner, Corner, Corner], _list_of(4, "corners,
 DIMENSION_OF_FIELD = {"u": units.LENGTH, "w": units.NUMBER, "phi": units.INVERSE_LENGTH, "omega": units.ANGLE}
 
 
-def prescribed_value(value: object, field: str) -> float:
-    """Value of a nodal field in SI: u a length, w a number, phi an inverse length, omega an angle."""
-    return _read(value, DIMENSION_OF_FIELD[field])
+def prescribed_value(value: object, field: str, one: bool) -> float | tuple[float, ...]:
+    """Value of a nodal field, or of its three components: u in m, w a number, phi in 1/m, omega in rad."""
+    if not isinstance(value, list | tuple):
+        return _read(value, DIMENSION_OF_FIELD[field])
+    if one or len(value) != 3:
+        expected = "one value" if one else "one value, or three along X1, X2, X3"
+        raise InputError(f"has {len(value)} entries; expected {expected}")
+    return tuple(_read(each, DIMENSION_OF_FIELD[field]) for each in value)

@@ -133,7 +133,7 @@ def _located(details: Mapping[str, Any]) -> tuple[str, str]:
     """Key as a user would write it, and what is wrong with it."""
     from magshell.problem.schema import ProblemFile
 
-    where = list(details["loc"])
+    where = [part for part in details["loc"] if part != "[key]"]
     context = details.get("ctx", {})
     choice, depth = ProblemFile.chosen_by.get(str(where[0]) if where else "", ("", 0))
     if choice and len(where) > depth:
@@ -168,8 +168,6 @@ def _located(details: Mapping[str, Any]) -> tuple[str, str]:
             message = f"{details['input']!r} is not text; write it in quotes"
         case "bool_type":
             message = f"{details['input']!r} is neither true nor false"
-        case "too_short":
-            message = "is empty"
         case _:
             message = str(details["msg"])
     return _written(where), message

@@ -51,18 +51,22 @@ class _Figures:
     couple: float
 
     @property
+    def strongest(self) -> float:
+        return float(self.remanence.max())
+
+    @property
     def slenderness(self) -> float:
         return self.extent / self.thickness
 
     @property
     def magnetic_load(self) -> float:
         """10³ |B| |Brem| / (mu mu0), the abscissa of the source's figures."""
-        return 1e3 * self.field * self.remanence.max() / (self.shear_modulus * VACUUM_PERMEABILITY)
+        return 1e3 * self.field * self.strongest / (self.shear_modulus * VACUUM_PERMEABILITY)
 
     @property
     def bending_load(self) -> float:
         """12 |Brem| |B| / (mu0 E) (L/h)²: an elastic line of this length bends visibly from about 0.1."""
-        stress = self.field * self.remanence.max() / VACUUM_PERMEABILITY
+        stress = self.field * self.strongest / VACUUM_PERMEABILITY
         return 12.0 * stress / self.youngs_modulus * self.slenderness**2
 
 
@@ -187,7 +191,7 @@ def _span(magnitude: FloatArray, elements: IntArray) -> str:
 
 def _field(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
     table = problem.file.field
-    yield "flux density B", f"({', '.join(show(each, FLUX_DENSITY) for each in table.flux_density)})"
+    yield "flux density B", _components(table.flux_density, FLUX_DENSITY)
     yield "|B|", show(figures.field, FLUX_DENSITY)
     yield "coupling law", table.coupling
     if table.stops:
@@ -208,10 +212,16 @@ def _supports(problem: Problem) -> Iterator[tuple[str, str]]:
                 )
             case schema.PrescribeTable():
                 what = table.field if table.component is None else f"{table.field}{table.component}"
-                dimension: Dimension = DIMENSION_OF_FIELD[table.field]
-                yield table.group, f"prescribe {what} = {show(table.value, dimension)}, {counted}"
+                value = _components(table.value, DIMENSION_OF_FIELD[table.field])
+                yield table.group, f"prescribe {what} = {value}, {counted}"
             case _:
                 yield table.group, f"{table.kind}, {counted}"
+
+
+def _components(value: float | tuple[float, ...], dimension: Dimension) -> str:
+    if isinstance(value, tuple):
+        return f"({', '.join(show(component, dimension) for component in value)})"
+    return show(value, dimension)
 
 
 def _probes(problem: Problem, extent: float) -> Iterator[tuple[str, str]]:
@@ -237,17 +247,17 @@ def _doubts(problem: Problem, figures: _Figures) -> Iterator[str]:
     if figures.field > 5.0:
         field = show(figures.field, FLUX_DENSITY)
         yield f"the field is {field}: beyond most laboratories; check field.flux_density"
-    if figures.remanence.max() > 1.5:
-        yield f"the remanence is {show(figures.remanence.max(), FLUX_DENSITY)}: more than any magnet keeps"
+    if figures.strongest > 1.5:
+        yield f"the remanence is {show(figures.strongest, FLUX_DENSITY)}: more than any magnet keeps"
     if figures.shear_modulus < 1e3:
         yield f"the shear modulus is {modulus}: softer than a gel; check material.shear_modulus"
     if figures.shear_modulus > 1e10:
         yield f"the shear modulus is {modulus}: stiffer than magnesium; check material.shear_modulus"
     if figures.poissons_ratio > 0.4999:
         yield f"Poisson's ratio is {figures.poissons_ratio:.6g}: nearly incompressible, slow to converge"
-    if figures.field and not figures.remanence.max():
+    if figures.field and not figures.strongest:
         yield "there is a field but no remanence: the field does nothing"
-    elif figures.field and figures.couple < 1e-9 * figures.field * figures.remanence.max():
+    elif figures.field and figures.couple < 1e-9 * figures.field * figures.strongest:
         yield "the field is parallel to the remanence everywhere: the undeformed shape feels no couple"
     elif figures.field and figures.bending_load < 1e-3:
         yield f"the bending load is {figures.bending_load:.2g}: the shell will hardly move; check the units"

@@ -1,0 +1,274 @@
+"""Every way to get a problem file wrong that we could think of, and what the user is told.
+
+Each entry changes one thing in a problem that works. The command must end with status 2, say it in one line
+that names file and key, show no traceback and leave no results behind.
+"""
+
+# ruff: noqa: E501 (a table reads best with one entry a line)
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from magshell.cli import main
+
+STRIP = """
+[mesh]
+generator = "rectangle"
+length = "20 mm"
+width = "5 mm"
+elements = [4, 1]
+
+[mesh.edge_groups]
+far = { x1 = "20 mm" }
+
+[shell]
+thickness = "1 mm"
+
+[material]
+law = "micropolar-neo-hookean"
+shear_modulus = "303 kPa"
+lame_lambda = "7300 kPa"
+
+[[remanence]]
+kind = "constant"
+vector = ["143 mT", 0, 0]
+
+[field]
+flux_density = [0, 0, "2 mT"]
+stops = ["1 mT", "2 mT"]
+
+[[supports]]
+kind = "clamp"
+group = "left"
+
+[probes]
+tip = ["20 mm", 0, 0]
+"""
+
+BLOCKS = STRIP.replace(
+    STRIP[STRIP.index("[mesh]") : STRIP.index("[shell]")],
+    """[mesh]
+generator = "blocks"
+elements = [2, 1]
+
+[mesh.blocks.one]
+corners = [[0, 0], ["10 mm", 0], ["10 mm", "5 mm"], [0, "5 mm"]]
+
+[mesh.blocks.two]
+corners = [["10 mm", 0], ["20 mm", 0], ["20 mm", "5 mm"], ["10 mm", "5 mm"]]
+
+[mesh.edge_groups]
+left = { x1 = 0 }
+
+""",
+)
+
+PUMP = STRIP.replace(
+    STRIP[STRIP.index("[mesh]") : STRIP.index("[shell]")],
+    """[mesh]
+generator = "cylinder"
+radius = "20 mm"
+length = "10 mm"
+elements = [6, 1]
+angle = ["0 deg", "90 deg"]
+
+""",
+).replace('"left"', '"start"')
+
+CLAMP = '[[supports]]\nkind = "clamp"\ngroup = "left"\n'
+REMANENCE = '[[remanence]]\nkind = "constant"\nvector = ["143 mT", 0, 0]\n'
+
+
+class Broken(NamedTuple):
+    """One change to a problem that works, where it must be reported, and words of the report."""
+
+    name: str
+    old: str
+    new: str
+    where: str
+    words: tuple[str, ...]
+    base: str = STRIP
+
+
+BROKEN = [
+    # keys
+    Broken("misspelt key", "thickness", "thicknes", "shell.thicknes", ("unknown key", "'thickness'")),
+    Broken("misspelt table", "[shell]", "[shel]", "shel", ("unknown key", "'shell'")),
+    Broken("missing table", '[shell]\nthickness = "1 mm"', "", "shell", ("missing",)),
+    Broken("missing key", 'width = "5 mm"', "", "mesh.width", ("missing",)),
+    Broken("key of another generator", 'width = "5 mm"', 'width = "5 mm"\nradius = "5 mm"', "mesh.radius", ("unknown key",)),
+    Broken("unknown key in a list", 'group = "left"', 'group = "left"\nside = 1', "supports[0].side", ("unknown key", "group")),
+    # kinds
+    Broken("unknown generator", '"rectangle"', '"rectangel"', "mesh.generator", ("'rectangel'", "'rectangle'")),
+    Broken("no generator", 'generator = "rectangle"', "", "mesh.generator", ("missing", "sphere-patch")),
+    Broken("generator of another type", '"rectangle"', "3", "mesh.generator", ("'3'", "rectangle")),
+    Broken("unknown law", '"micropolar-neo-hookean"', '"neo-hookean"', "material.law", ("'neo-hookean'", "micropolar-neo-hookean")),
+    Broken("unknown support", '"clamp"', '"clamped"', "supports[0].kind", ("'clamped'", "'clamp'")),
+    Broken("unknown remanence", '"constant"', '"radial"', "remanence[0].kind", ("'radial'", "meridional")),
+    Broken("unknown coupling", "stops", 'coupling = "cuople"\nstops', "field.coupling", ("'cuople'", "'couple'")),
+    # units
+    Broken("wrong unit", '"1 mm"\n\n[mat', '"0.9 kPa"\n\n[mat', "shell.thickness", ("0.9 kPa", "stress", "length", "mm")),
+    Broken("missing unit", '"303 kPa"', "303", "material.shear_modulus", ("303", "no unit", "kPa")),
+    Broken("missing unit in a list", '"143 mT"', "143", "remanence[0].vector[0]", ("no unit", "mT")),
+    Broken("misspelt unit", '"303 kPa"', '"303 Kpa"', "material.shear_modulus", ("'Kpa'", "'kPa'")),
+    Broken("no number", '"303 kPa"', '"soft"', "material.shear_modulus", ("'soft'", "number")),
+    Broken("stop in mm", '"1 mT", "2 mT"', '"1 mm", "2 mT"', "field.stops[0]", ("length", "flux density")),
+    # values
+    Broken("negative thickness", '"1 mm"\n\n[mat', '"-1 mm"\n\n[mat', "shell.thickness", ("-1 mm", "not positive")),
+    Broken("zero thickness", '"1 mm"\n\n[mat', "0\n\n[mat", "shell.thickness", ("not positive",)),
+    Broken("NaN", '"303 kPa"', "nan", "material.shear_modulus", ("nan", "not a finite number")),
+    Broken("NaN with unit", '"2 mT"]\nst', '"nan mT"]\nst', "field.flux_density[2]", ("not a finite number",)),
+    Broken("infinite", '"20 mm"\nw', '"inf mm"\nw', "mesh.length", ("not a finite number",)),
+    Broken("infinite TOML number", '"20 mm"\nw', "inf\nw", "mesh.length", ("not a finite number",)),
+    Broken("overflow", '"20 mm"\nw', '"1e999 mm"\nw', "mesh.length", ("not a finite number",)),
+    Broken("beyond sense", '"20 mm"\nw', '"1e30 mm"\nw', "mesh.length", ("beyond any length",)),
+    Broken("negative modulus", '"7300 kPa"', '"-300 kPa"', "material.lame_lambda", ("negative",)),
+    Broken("share above one", 'law = "micropolar-neo-hookean"', 'law = "micropolar-mooney-rivlin"\nsecond_invariant_share = 1.5', "material", ("second_invariant_share",)),
+    Broken("boolean for a length", '"20 mm"\nw', "true\nw", "mesh.length", ("True", "length")),
+    Broken("text for a table", '[shell]\nthickness = "1 mm"', "", "shell", ("table",), "shell = 3\n" + STRIP),
+    Broken("table for a list", "[[supports]]", "[supports]", "supports", ("[[supports]]",)),
+    Broken("zero elements", "[4, 1]", "[0, 1]", "mesh.elements[0]", ("0", "whole number")),
+    Broken("fractional elements", "[4, 1]", "[4.5, 1]", "mesh.elements[0]", ("4.5", "whole number")),
+    Broken("elements as text", "[4, 1]", '["4", 1]', "mesh.elements[0]", ("'4'", "whole number")),
+    Broken("too many elements", "[4, 1]", "[9000, 9000]", "mesh", ("81000000 elements",)),
+    Broken("one number of elements", "[4, 1]", "[4]", "mesh.elements", ("1 entries", "expected 2")),
+    Broken("elements not a list", "[4, 1]", "4", "mesh.elements", ("not a list",)),
+    Broken("vector of four", '["143 mT", 0, 0]', '["143 mT", 0, 0, 0]', "remanence[0].vector", ("4 entries", "expected 3")),
+    Broken("position of two", '["20 mm", 0, 0]', '["20 mm", 0]', "probes.tip", ("2 entries", "expected 3")),
+    Broken("title as a number", "[mesh]", "title = 3\n[mesh]", "title", ("not text",)),
+    Broken("probe name with a comma", "tip =", '"ti,p" =', "probes.ti,p", ("name",)),
+    # load
+    Broken("nothing loads", '"2 mT"]\nstops = ["1 mT", "2 mT"]', "0]", "field", ("flux_density", "zero", "nothing loads")),
+    Broken("stop beyond the field", '"1 mT", "2 mT"', '"1 mT", "3 mT"', "field.stops[1]", ("beyond the end",)),
+    Broken("stops unordered", '"1 mT", "2 mT"', '"2 mT", "1 mT"', "field.stops[1]", ("rise",)),
+    Broken("stop at zero", '"1 mT", "2 mT"', '0, "2 mT"', "field.stops[0]", ("not positive",)),
+    Broken("remanence twice", 'vector = ["143 mT", 0, 0]', 'vector = ["143 mT", 0, 0]\nmagnitude = "1 mT"', "remanence[0].vector", ("one or the other",)),
+    Broken("magnitude without direction", 'vector = ["143 mT", 0, 0]', 'magnitude = "1 mT"', "remanence[0].direction", ("missing",)),
+    Broken("zero direction", 'vector = ["143 mT", 0, 0]', 'magnitude = "1 mT"\ndirection = [0, 0, 0]', "remanence[0].direction", ("zero vector",)),
+    Broken("remanence of no group", REMANENCE, REMANENCE + 'group = "arm"\n', "remanence[0].group", ("'arm'",)),
+    Broken("remanence on an edge", REMANENCE, REMANENCE + 'group = "left"\n', "remanence[0].group", ("group of edges",)),
+    Broken("empty list of groups", REMANENCE, REMANENCE + "group = []\n", "remanence[0].group", ("empty list",)),
+    Broken("two remanences, one without group", REMANENCE, REMANENCE + 'group = "one"\n' + REMANENCE, "remanence[1].group", ("missing", "one, two"), BLOCKS),
+    Broken("two remanences in one element", REMANENCE, (REMANENCE + 'group = "one"\n') * 2, "remanence[1].group", ("already", "'one'"), BLOCKS),
+    # supports and probes
+    Broken("missing group", '"left"', '"lefft"', "supports[0].group", ("'lefft'", "'left'")),
+    Broken("empty group name", '"left"', '""', "supports[0].group", ("name",)),
+    Broken("no supports table", CLAMP, "", "supports", ("missing",)),
+    Broken("no supports", CLAMP, "", "supports", ("empty",), "supports = []\n" + STRIP),
+    Broken("support that lets it slide", '"clamp"', '"symmetry"\nnormal = [1, 0, 0]', "supports", ("translation along",)),
+    Broken("symmetry without normal", '"clamp"', '"symmetry"', "supports[0].normal", ("missing",)),
+    Broken("prescribed value in the wrong unit", '"clamp"', '"prescribe"\nfield = "u"\ncomponent = 3\nvalue = "1 deg"', "supports[0].value", ("angle", "length")),
+    Broken("prescribed value of two components", '"clamp"', '"prescribe"\nfield = "u"\nvalue = ["1 mm", 0]', "supports[0].value", ("2 entries", "expected one value, or three")),
+    Broken("contradicting supports", CLAMP, CLAMP + '[[supports]]\nkind = "prescribe"\ngroup = "left"\nfield = "u"\nvalue = "1 mm"\n', "", ("supports contradict each other", "'left'")),
+    Broken("no remanence", '"143 mT"', "0", "remanence", ("zero everywhere",)),
+    Broken("component 4", '"clamp"', '"prescribe"\nfield = "u"\ncomponent = 4', "supports[0].component", ("4", "1, 2 or 3")),
+    Broken("component of phi", '"clamp"', '"prescribe"\nfield = "phi"\ncomponent = 1', "supports[0].component", ("phi",)),
+    Broken("unknown field", '"clamp"', '"prescribe"\nfield = "v"', "supports[0].field", ("'v'", "'u'")),
+    Broken("probe not on the mesh", '["20 mm", 0, 0]', '["21 mm", 0, 0]', "probes.tip", ("nearest",)),
+    Broken("edge group where nothing is", 'x1 = "20 mm" }', 'x1 = "21 mm" }', "mesh.edge_groups.far", ("no boundary edge",)),
+    Broken("edge group without coordinate", '{ x1 = "20 mm" }', "{}", "mesh.edge_groups.far", ("x1, x2, x3",)),
+    Broken("edge group with a name that is taken", "far =", "left =", "mesh.edge_groups.left", ("left",)),
+    # meshes
+    Broken("inverted block", '[[0, 0], ["10 mm", 0], ["10 mm", "5 mm"], [0, "5 mm"]]', '[[0, 0], [0, "5 mm"], ["10 mm", "5 mm"], ["10 mm", 0]]', "mesh", ("'one'", "clockwise"), BLOCKS),
+    Broken("twisted block", '[[0, 0], ["10 mm", 0], ["10 mm", "5 mm"], [0, "5 mm"]]', '[[0, 0], ["10 mm", "5 mm"], ["10 mm", 0], [0, "5 mm"]]', "mesh", ("'one'",), BLOCKS),
+    Broken("three corners", ', [0, "5 mm"]]', "]", "mesh.blocks.one.corners", ("3 entries", "expected 4"), BLOCKS),
+    Broken("corner of one coordinate", '[0, "5 mm"]]', "[0]]", "mesh.blocks.one.corners[3]", ("1 entries", "expected 2 or 3"), BLOCKS),
+    Broken("block without elements", "elements = [2, 1]", "", "mesh.blocks.one.elements", ("missing",), BLOCKS),
+    Broken("divisions that do not match", "[mesh.blocks.two]", "[mesh.blocks.two]\nelements = [2, 3]", "mesh", ("'one'", "'two'", "1", "3"), BLOCKS),
+    Broken("no blocks", BLOCKS[BLOCKS.index("[mesh.blocks.one]") : BLOCKS.index("[mesh.edge_groups]")], "[mesh.blocks]\n", "mesh.blocks", ("empty",), BLOCKS),
+    Broken("disconnected block without support", '["10 mm", 0], ["20 mm", 0], ["20 mm", "5 mm"], ["10 mm", "5 mm"]', '["11 mm", 0], ["20 mm", 0], ["20 mm", "5 mm"], ["11 mm", "5 mm"]', "supports", ("part",), BLOCKS),
+    Broken("angle that goes back", '["0 deg", "90 deg"]', '["90 deg", "0 deg"]', "mesh", ("angle",), PUMP),
+    Broken("angle in mm", '"90 deg"', '"90 mm"', "mesh.angle[1]", ("length", "angle"), PUMP),
+    Broken("axis of zero length", "angle =", "axis = [0, 0, 0]\nangle =", "mesh.axis", ("zero vector",), PUMP),
+    # TOML
+    Broken("key twice", 'width = "5 mm"', 'width = "5 mm"\nwidth = "6 mm"', "", ("not valid TOML", "twice", "line 6")),
+    Broken("table twice", "[field]", "[shell]\n[field]", "", ("not valid TOML", "twice", "line")),
+    Broken("quote not closed", '"303 kPa"', '"303 kPa', "", ("not valid TOML", "line 16")),
+    Broken("unit outside the quotes", '"303 kPa"', "303 kPa", "", ("not valid TOML", "line 16")),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("case", BROKEN, ids=[case.name.replace(" ", "-") for case in BROKEN])
+@pytest.mark.parametrize("command", ["check", "run"])
+def test_says_what_is_wrong_and_where(
+    case: Broken, command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert case.base.count(case.old) == 1, "the entry must change one thing"
+    (tmp_path / "broken.toml").write_text(case.base.replace(case.old, case.new))
+    out = ["--out", str(tmp_path / "out")] if command == "run" else []
+    status = main([command, str(tmp_path / "broken.toml"), *out])
+    shown = capsys.readouterr()
+    lines = shown.err.splitlines()
+    place = f"error: broken.toml: {case.where}: " if case.where else "error: broken.toml: "
+    assert status == 2, shown.err
+    assert len(lines) == 1, shown.err
+    assert lines[0].startswith(place), f"{lines[0]!r} does not start with {place!r}"
+    for word in case.words:
+        assert word in lines[0], f"{word!r} is not in {lines[0]!r}"
+    assert "Traceback" not in shown.err + shown.out
+    assert not (tmp_path / "out").exists()
+
+
+def refused(capsys: pytest.CaptureFixture[str], problem: Path | str, out: Path) -> str:
+    """What the command says about a problem that it refuses without leaving anything behind."""
+    status = main(["run", str(problem), "--out", str(out)])
+    shown = capsys.readouterr().err
+    assert status == 2, shown
+    assert not out.exists()
+    assert "Traceback" not in shown
+    assert len(shown.splitlines()) == 1, shown
+    return shown
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"", "empty"),
+        (b"  \n\t\n", "empty"),
+        (b"\x7fELF\x02\x01\x00", "not valid TOML"),
+        (b"\x89PNG\r\n\x1a\n\x00", "not a text file in UTF-8 (byte 0 is 0x89)"),
+        (STRIP.encode("utf-16"), "not a text file"),
+        (b"a = " + b"[" * 100_000, "nested too deeply"),
+        (b"a = 1" + b"0" * 5_000, "not valid TOML"),
+        (b"\x00", "not valid TOML"),
+    ],
+    ids=["empty", "blank", "binary", "picture", "utf-16", "deep", "huge-integer", "nul"],
+)
+def test_what_is_no_problem_file(
+    content: bytes, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "broken.toml"
+    file.write_bytes(content)
+    shown = refused(capsys, file, tmp_path / "out")
+    assert shown.startswith("error: broken.toml: ")
+    assert words in shown
+
+
+def test_missing_file_names_the_nearest(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "my-arm.toml").write_text(STRIP)
+    assert "Did you mean 'my-arm.toml'" in refused(capsys, tmp_path / "myarm.toml", tmp_path / "out")
+    assert "Did you mean 'gripper'" in refused(capsys, "griper", tmp_path / "out")
+
+
+def test_folder_is_no_problem(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert "is a folder" in refused(capsys, tmp_path, tmp_path / "out")
+
+
+def test_byte_order_mark_and_windows_line_ends_are_read(tmp_path: Path) -> None:
+    file = tmp_path / "windows.toml"
+    file.write_bytes(b"\xef\xbb\xbf" + STRIP.replace("\n", "\r\n").encode())
+    assert main(["check", str(file)]) == 0
+
+
+def test_every_error_has_its_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "broken.toml"
+    file.write_text(
+        STRIP.replace('"5 mm"', '"5 kPa"').replace("[4, 1]", "[0, 1]").replace('"clamp"', '"clip"')
+    )
+    assert main(["check", str(file)]) == 2
+    keys = [line.split(": ")[2] for line in capsys.readouterr().err.splitlines()]
+    assert keys == ["mesh.width", "mesh.elements[0]", "supports[0].kind"]

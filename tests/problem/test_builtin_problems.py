@@ -1,0 +1,134 @@
+"""The built-in problems: each is what the source describes."""
+
+# ruff: noqa: E501 (a table reads best with one entry a line)
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from magshell import problem
+from magshell.problem import examples
+from magshell.problem.building import Problem
+from magshell.problem.report import describe
+from magshell.shell.shape_functions import gauss_legendre, serendipity
+from magshell.typing import FloatArray
+
+STRIP_STOPS = (1, 2, 3, 5, 10, 15, 20, 50)
+
+
+class Example(NamedTuple):
+    """Figures of the source: mm, kPa, mT."""
+
+    name: str
+    elements: int
+    area: float
+    thickness: float
+    shear_modulus: float
+    lame_lambda: float
+    remanence: float
+    field: float
+    stops: tuple[float, ...]
+    probes: str
+
+
+R = 24 * 6 / (2 * np.pi)
+EXAMPLES = [
+    Example("strip-10", 20, 11 * 5, 1.1, 303, 7300, 143, 50, STRIP_STOPS, "tip"),
+    Example("strip-17", 30, 19.2 * 5, 1.1, 303, 7300, 143, 50, STRIP_STOPS, "tip"),
+    Example("strip-20", 60, 17.2 * 5, 0.84, 303, 7300, 143, 50, STRIP_STOPS, "tip"),
+    Example("strip-41", 80, 17.2 * 5, 0.42, 303, 7300, 143, 50, STRIP_STOPS, "tip"),
+    Example("thin-cross", 3 * 3 + 2 * 12 * 3, 9 * 36 / 4, 0.9, 135, 3250, 94, 40, (2, 5, 10, 40), "A A' C D"),
+    Example("h-shape", 15 * 16 // 4, 15 * 36 / 4, 0.9, 135, 3250, 94, -50, (2, 5, 15, 50), "A A' C D"),
+    Example("hollow-cross", 6 * 36, 6 * 48, 0.41, 303, 7300, 102, -200, (10, 50, 100, 200), "A C E G"),
+    Example("pump", 24 * 20, np.pi * R * 60, 0.9, 135, 3250, 94, 150, (20, 50, 100, 150), "A B C"),
+    Example("gripper", 30 * 6, np.pi / 3 * R**2 * np.cos(np.pi / 12), 0.9, 135, 3250, 94, 10, (1, 2, 4, 6.8), "A B C D E"),
+]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def loaded() -> dict[str, Problem]:
+    return {name: problem.load(name) for name in examples.names()}
+
+
+def test_every_built_in_problem_is_described_here() -> None:
+    assert examples.names() == sorted(example.name for example in EXAMPLES)
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=[example.name for example in EXAMPLES])
+def test_is_what_the_source_describes(example: Example, loaded: dict[str, Problem]) -> None:
+    this = loaded[example.name]
+    shell, mesh = this.model.shell, this.model.shell.mesh
+    material = shell.material
+    assert len(mesh.elements) == example.elements
+    assert _area(mesh.points[mesh.elements]) * 1e6 == pytest.approx(example.area, rel=1e-4)
+    assert shell.thickness == pytest.approx(example.thickness * 1e-3, rel=1e-15)
+    assert material.shear_modulus == example.shear_modulus * 1e3
+    assert material.lame_lambda == example.lame_lambda * 1e3
+    assert material.coupling_modulus == pytest.approx(material.shear_modulus / 10, rel=1e-15)
+    assert material.length_scale == pytest.approx(shell.thickness / 10, rel=1e-15)
+    assert this.file.field.flux_density == (0.0, 0.0, pytest.approx(example.field * 1e-3))
+    reached = np.array(this.file.field.stops) * 1e3
+    missed = [stop for stop in example.stops if not np.isclose(reached, stop, rtol=1e-12).any()]
+    assert not missed, f"stops {reached} miss {missed}"
+    assert list(this.model.probe_nodes) == example.probes.split()
+    centres = mesh.points[mesh.elements].mean(axis=1)[:, None]
+    magnitudes = np.linalg.norm(shell.remanence(mesh, centres), axis=2)
+    assert set(np.round(magnitudes.ravel() * 1e3, 9)) <= {0.0, example.remanence}
+    assert describe(this).warnings == []
+
+
+@pytest.mark.parametrize(
+    ("name", "directions"),
+    [
+        ("thin-cross", {(10, 1): (1, 0), (1, 10): (0, -1), (1, 1): (0, 0)}),
+        ("h-shape", {(10, 1): (1, 0), (18, 8): (0, 1), (18, 1): (0, 0), (1, 1): (0, 0)}),
+        (
+            "hollow-cross",
+            {
+                (24, 4): (0, -1),
+                (20, 8): (-1, 0),
+                (10, 8): (1, 0),
+                (8, 10): (0, 1),
+                (8, 20): (0, -1),
+                (4, 24): (-1, 0),
+            },
+        ),
+    ],
+)
+def test_remanence_points_where_the_layout_says(
+    name: str, directions: dict[tuple[float, float], tuple[float, float]], loaded: dict[str, Problem]
+) -> None:
+    shell = loaded[name].model.shell
+    centres = shell.mesh.points[shell.mesh.elements].mean(axis=1)
+    vectors = shell.remanence(shell.mesh, centres[:, None])[:, 0]
+    for place, expected in directions.items():
+        nearest = np.argmin(np.linalg.norm(centres[:, :2] * 1e3 - place, axis=1))
+        unit = vectors[nearest, :2] / max(np.linalg.norm(vectors[nearest]), 1e-30)
+        assert unit == pytest.approx(expected, abs=1e-12), f"at {place} mm"
+
+
+def test_curved_remanence(loaded: dict[str, Problem]) -> None:
+    for name in ("pump", "gripper"):
+        shell = loaded[name].model.shell
+        points = shell.mesh.points
+        vectors = shell.remanence(shell.mesh, points[shell.mesh.elements])
+        x = points[shell.mesh.elements]
+        radial = x * [1, 0, 1] if name == "pump" else x
+        off = np.abs(np.einsum("epi,epi->ep", radial, vectors)).max()
+        assert off < 1e-12, f"{name}: component out of the surface {off}"
+    pump = loaded["pump"].model.shell
+    centres = pump.mesh.points[pump.mesh.elements].mean(axis=1)[:, None]
+    assert (pump.remanence(pump.mesh, centres)[..., 2] > 0).all()
+    gripper = loaded["gripper"].model.shell
+    centres = gripper.mesh.points[gripper.mesh.elements].mean(axis=1)[:, None]
+    assert (gripper.remanence(gripper.mesh, centres)[..., 2] * centres[..., 2] < 0).all()
+
+
+def _area(x: FloatArray) -> float:
+    """Area of 8-node quadrilaterals (elements, 8, 3), by 3×3 Gauss points."""
+    points, weights = gauss_legendre(3)
+    base = np.einsum("gan,eni->egai", serendipity(points)[1], x)
+    return float((np.linalg.norm(np.cross(base[:, :, 0], base[:, :, 1]), axis=2) @ weights).sum())
