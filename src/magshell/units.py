@@ -93,27 +93,27 @@ def parse(value: object, dimension: Dimension, unit: str | None = None) -> float
     """
     number, found = _split(value, dimension)
     if not math.isfinite(float(number)):
-        raise InputError(f"{_quoted(value)} is not a finite number")
+        raise InputError(f"{quoted(value)} is not a finite number")
     if not dimension.units:
         if found:
-            raise InputError(f"{_quoted(value)} has the unit '{found}' where a {dimension.name} is expected")
+            raise InputError(f"{quoted(value)} has the unit '{found}' where a {dimension.name} is expected")
         return float(number)
     if not found:
         if float(number) == 0.0:
             return 0.0
         raise InputError(
-            f"{_quoted(value)} has no unit where a {dimension.name} is expected; write a string such as "
+            f"{quoted(value)} has no unit where a {dimension.name} is expected; write a string such as "
             f'"{number} {next(iter(dimension.units))}" (units: {dimension.allowed})'
         )
     if found not in dimension.units:
-        raise InputError(f"{_quoted(value)} {_wrong_unit(found, dimension)}")
+        raise InputError(f"{quoted(value)} {_wrong_unit(found, dimension)}")
     with localcontext() as context:
         context.prec = 36
         result = float(
             number * (dimension.units[found] / dimension.units[unit or next(iter(dimension.units))])
         )
     if not math.isfinite(result):
-        raise InputError(f"{_quoted(value)} is not a finite number")
+        raise InputError(f"{quoted(value)} is not a finite number")
     return result
 
 
@@ -143,14 +143,14 @@ def _split(value: object, dimension: Dimension) -> tuple[Decimal, str]:
         try:
             return Decimal(repr(float(value))), ""
         except OverflowError:
-            raise InputError(f"{_quoted(value)} is not a finite number") from None
+            raise InputError(f"{quoted(value)} is not a finite number") from None
     if not isinstance(value, str):
-        raise InputError(f"{_quoted(value)} is not a {dimension.name}; {_example(dimension)}")
+        raise InputError(f"{quoted(value)} is not a {dimension.name}; {_example(dimension)}")
     if _NOT_FINITE.match(value):
-        raise InputError(f"{_quoted(value)} is not a finite number")
+        raise InputError(f"{quoted(value)} is not a finite number")
     match = _NUMBER.fullmatch(value)
     if match is None:
-        raise InputError(f"{_quoted(value)} does not begin with a number; {_example(dimension)}")
+        raise InputError(f"{quoted(value)} does not begin with a number; {_example(dimension)}")
     number, unit = match.group(1), match.group(2).strip()
     if float(number) == 0.0:
         number = "0"
@@ -165,7 +165,7 @@ def _wrong_unit(found: str, dimension: Dimension) -> str:
     near = [name for name in names if name.casefold() == found.casefold()]
     near = near or difflib.get_close_matches(found, names, n=1, cutoff=0.5)
     hint = f"; did you mean '{near[0]}'?" if near else ""
-    return f"has the unknown unit '{_short(found)}'{hint} (units of {dimension.name}: {dimension.allowed})"
+    return f"has the unknown unit '{shortened(found)}'{hint} (units of {dimension.name}: {dimension.allowed})"
 
 
 def _example(dimension: Dimension) -> str:
@@ -175,13 +175,15 @@ def _example(dimension: Dimension) -> str:
     return f'write a number with its unit, such as "1 {unit}" (units: {dimension.allowed})'
 
 
-def _short(text: str) -> str:
-    printable = "".join(c if c.isprintable() else "?" for c in text)
+def shortened(text: str) -> str:
+    """Text on one line of at most 40 characters, for a message."""
+    printable = "".join(c if c.isprintable() else " " for c in text)
     return printable if len(printable) <= 40 else printable[:37] + "..."
 
 
-def _quoted(value: object) -> str:
+def quoted(value: object) -> str:
+    """What the user wrote, on one short line, for a message."""
     try:
-        return f"'{_short(str(value))}'"
+        return f"'{shortened(str(value))}'"
     except ValueError:  # an integer of more digits than Python prints
         return "a huge integer"

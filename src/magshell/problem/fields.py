@@ -26,7 +26,7 @@ _PROBE_NAME = re.compile(r"\w[\w'-]*")
 def _read(value: object, dimension: units.Dimension, unit: str | None = None) -> float:
     number = units.parse(value, dimension, unit)
     if abs(number) > LARGEST or 0.0 < abs(number) < SMALLEST:
-        raise InputError(f"'{value}' is beyond any {dimension.name} that makes sense")
+        raise InputError(f"{units.quoted(value)} is beyond any {dimension.name} that makes sense")
     return number
 
 
@@ -38,7 +38,7 @@ def _positive_quantity(dimension: units.Dimension) -> BeforeValidator:
     def read(value: object) -> float:
         number = _read(value, dimension)
         if number <= 0.0:
-            raise InputError(f"'{value}' is not positive")
+            raise InputError(f"{units.quoted(value)} is not positive")
         return number
 
     return BeforeValidator(read)
@@ -58,16 +58,16 @@ def _list_of(count: int | tuple[int, ...], what: str) -> BeforeValidator:
 
 def _count(value: object) -> int:
     if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= MOST_DIVISIONS:
-        raise InputError(f"{_printable(value)} is not a whole number from 1 to {MOST_DIVISIONS}")
+        raise InputError(f"{units.quoted(value)} is not a whole number from 1 to {MOST_DIVISIONS}")
     return value
 
 
 def _text_like(pattern: re.Pattern[str], rule: str) -> Callable[[object], str]:
     def read(value: object) -> str:
         if not isinstance(value, str):
-            raise InputError(f"{_printable(value)} is not a name; write it in quotes")
+            raise InputError(f"{units.quoted(value)} is not a name; write it in quotes")
         if not pattern.fullmatch(value):
-            raise InputError(f"{value!r} is not a name: {rule}")
+            raise InputError(f"{units.quoted(value)} is not a name: {rule}")
         return value
 
     return read
@@ -96,14 +96,6 @@ def _nonzero(value: tuple[float, float, float]) -> tuple[float, float, float]:
     if not any(value):
         raise InputError("is the zero vector; it must have a direction")
     return value
-
-
-def _printable(value: object) -> str:
-    try:
-        text = repr(value)
-    except ValueError:  # an integer of more digits than Python prints
-        return "a huge integer"
-    return text if len(text) <= 60 else text[:57] + "..."
 
 
 Length = Annotated[float, _quantity(units.LENGTH)]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, get_args
 
 from magshell.errors import InputError, suggest
 from magshell.problem import examples
+from magshell.units import quoted, shortened
 
 if TYPE_CHECKING:
     from pydantic import ValidationError
@@ -151,11 +152,9 @@ def _located(details: Mapping[str, Any]) -> tuple[str, str]:
             message = f"is missing. {suggest('', _kinds(str(where[0])))}"
         case "union_tag_invalid":
             where.append(choice)
-            message = (
-                f"'{context['tag']}' is not known. {suggest(str(context['tag']), _kinds(str(where[0])))}"
-            )
+            message = f"{quoted(context['tag'])} is not known. {suggest(str(context['tag']), _kinds(str(where[0])))}"
         case "literal_error":
-            message = f"{details['input']!r} is not one of {context['expected']}"
+            message = f"{quoted(details['input'])} is not one of {context['expected']}"
         case "model_attributes_type" | "dict_type":
             message = "is not a table of keys and values"
         case "tuple_type" | "list_type":
@@ -165,9 +164,9 @@ def _located(details: Mapping[str, Any]) -> tuple[str, str]:
                 else f"is not a list: write [[{where[-1]}]]"
             )
         case "string_type":
-            message = f"{details['input']!r} is not text; write it in quotes"
+            message = f"{quoted(details['input'])} is not text; write it in quotes"
         case "bool_type":
-            message = f"{details['input']!r} is neither true nor false"
+            message = f"{quoted(details['input'])} is neither true nor false"
         case _:
             message = str(details["msg"])
     return _written(where), message
@@ -190,5 +189,5 @@ def _kinds(table: str) -> list[str]:
 def _written(where: Sequence[str | int]) -> str:
     key = ""
     for part in where:
-        key += f"[{part}]" if isinstance(part, int) else f".{part}" if key else str(part)
+        key += f"[{part}]" if isinstance(part, int) else f"{'.' if key else ''}{shortened(part)}"
     return key
