@@ -41,7 +41,7 @@ def test_figures_of_the_strip() -> None:
     assert entry(report, "Material", "coupling modulus eta") == "30.3 kPa = 0.1 mu"
     assert entry(report, "Material", "length scale l") == "0.1 mm = 0.1 h"
     assert entry(report, "Mesh", "elements, nodes") == "4, 23"
-    assert entry(report, "Mesh", "unknowns") == f"about {3 * 23 + 7 * 10} before supports"
+    assert entry(report, "Mesh", "unknowns") == f"{3 * 20 + 7 * 8 + 2}, and {3 * 23 + 7 * 10} before supports"
     assert entry(report, "Supports", "left") == "clamp, 3 nodes"
     assert entry(report, "Probes", "tip").endswith("at (20 mm, 0, 0)")
     assert entry(report, "Field", "stops") == "1 mT, 2 mT"
@@ -56,7 +56,7 @@ def test_radius_of_curvature(name: str, radius: float) -> None:
 def test_remanence_by_group() -> None:
     old = '[[remanence]]\nkind = "constant"\nvector = ["143 mT", 0, 0]\n'
     report = report_of(BLOCKS.replace(old, old + 'group = "two"\n'))
-    assert entry(report, "Remanence", "two") == "constant, 143 mT"
+    assert entry(report, "Remanence", "two") == "143 mT, constant, along (1, 0, 0)"
     assert entry(report, "Remanence", "none in") == "2 of 4 elements"
 
 

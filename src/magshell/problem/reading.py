@@ -152,7 +152,8 @@ def _located(details: Mapping[str, Any]) -> tuple[str, str]:
             message = f"is missing. {suggest('', _kinds(str(where[0])))}"
         case "union_tag_invalid":
             where.append(choice)
-            message = f"{quoted(context['tag'])} is not known. {suggest(str(context['tag']), _kinds(str(where[0])))}"
+            tag = str(context["tag"])
+            message = f"{quoted(tag)} is not known. {suggest(tag, _kinds(str(where[0])))}"
         case "literal_error":
             message = f"{quoted(details['input'])} is not one of {context['expected']}"
         case "model_attributes_type" | "dict_type":

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -133,7 +133,10 @@ def _mesh(problem: Problem, extent: float) -> Iterator[tuple[str, str]]:
     quality = worst(mesh)
     yield "generator", problem.file.mesh.generator
     yield "elements, nodes", f"{len(mesh.elements)}, {len(mesh.points)}"
-    yield "unknowns", f"about {unknowns} before supports"
+    yield (
+        "unknowns",
+        f"{unknowns - int(problem.model.constraints.fixed.sum())}, and {unknowns} before supports",
+    )
     if len(mesh.parts) > 1:
         yield "separate parts", str(len(mesh.parts))
     for axis in range(3):
@@ -174,12 +177,30 @@ def _remanence(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]
     mesh, magnitude = problem.model.shell.mesh, figures.remanence
     for entry in problem.file.remanence:
         for group in entry.group or ():
-            yield group, f"{entry.kind}, {_span(magnitude, mesh.elements_of(group))}"
+            yield group, f"{_span(magnitude, mesh.elements_of(group))}, {_sense(entry)}"
         if entry.group is None:
-            yield "everywhere", f"{entry.kind}, {_span(magnitude, np.arange(len(magnitude)))}"
+            yield "everywhere", f"{_span(magnitude, np.arange(len(magnitude)))}, {_sense(entry)}"
     bare = int((magnitude == 0.0).sum())
     if bare:
         yield "none in", f"{bare} of {len(magnitude)} elements"
+
+
+def _sense(entry: schema.Remanence) -> str:
+    match entry:
+        case schema.ConstantRemanence():
+            along = np.array(entry.direction if entry.vector is None else entry.vector)
+            length = np.linalg.norm(along)
+            return f"constant, along {_vector(along / length)}" if length else "constant"
+        case schema.MeridionalRemanence():
+            mirrored = ", mirrored at the equator" if entry.mirrored else ""
+            return f"meridional, away from the pole {_vector(entry.axis)}{mirrored}"
+        case schema.CircumferentialRemanence():
+            towards = f", towards {_vector(entry.towards)}" if entry.towards else ""
+            return f"circumferential, about the axis {_vector(entry.axis)}{towards}"
+
+
+def _vector(components: Iterable[float]) -> str:
+    return f"({', '.join(f'{component:.4g}' for component in components)})"
 
 
 def _span(magnitude: FloatArray, elements: IntArray) -> str:
@@ -208,7 +229,7 @@ def _supports(problem: Problem) -> Iterator[tuple[str, str]]:
             case schema.SymmetryTable():
                 yield (
                     table.group,
-                    f"symmetry, normal ({', '.join(f'{n:g}' for n in table.normal)}), {counted}",
+                    f"symmetry, normal {_vector(table.normal)}, {counted}",
                 )
             case schema.PrescribeTable():
                 what = table.field if table.component is None else f"{table.field}{table.component}"
