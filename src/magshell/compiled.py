@@ -74,6 +74,11 @@ def inline(function: Function) -> Function:
     return compiled
 
 
+def also_compiled(function: Callable[..., Any]) -> None:
+    """Let kernels call a plain Python function: it is compiled as a part of them."""
+    numba.extending.register_jitable(fastmath=_FASTMATH, error_model="numpy")(function)
+
+
 def choose_by_type(generic: Callable[..., Any], implementations: dict[type, Callable[..., Any]]) -> None:
     """Let kernels that call `generic(law, …)` use the implementation registered for the NamedTuple type of `law`."""
 

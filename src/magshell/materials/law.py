@@ -36,6 +36,9 @@ class Material(Protocol):
     def couple_modulus(self) -> float:
         """Modulus gamma = mu l² of the couple stress M̃ = gamma G, N."""
 
+    def problems(self) -> list[str]:
+        """What is wrong with the parameters beyond their signs, a sentence each."""
+
 
 StrainEnergy = Callable[[Material, FloatArray], float]
 StressAndTangent = Callable[[Material, FloatArray, FloatArray, FloatArray], None]

@@ -106,3 +106,12 @@ class MicropolarMooneyRivlin(NamedTuple):
     def couple_modulus(self) -> float:
         """Modulus mu l² of the couple stress, N."""
         return self.shear_modulus * self.length_scale**2
+
+    def problems(self) -> list[str]:
+        """What is wrong with the parameters beyond their signs."""
+        if not 0.0 <= self.second_invariant_share < 1.0:
+            return [f"second_invariant_share is {self.second_invariant_share:g}; it must be at least 0 and below 1"]
+        least = 2.0 * self.second_invariant_share * self.shear_modulus
+        if self.lame_lambda < least:
+            return [f"lame_lambda is {self.lame_lambda:g} Pa; with this second_invariant_share at least {least:g} Pa"]
+        return []

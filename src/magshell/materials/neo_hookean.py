@@ -85,3 +85,7 @@ class MicropolarNeoHookean(NamedTuple):
     def couple_modulus(self) -> float:
         """Modulus mu l² of the couple stress, N."""
         return self.shear_modulus * self.length_scale**2
+
+    def problems(self) -> list[str]:
+        """What is wrong with the parameters beyond their signs."""
+        return []

@@ -1,14 +1,12 @@
-"""Tensor operations that material laws share, compiled into the kernels."""
+"""Tensor operations that material laws share; the kernels compile them together with the laws."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from magshell.compiled import inline
 from magshell.typing import FloatArray
 
 
-@inline
 def inverse_transpose(U: FloatArray) -> tuple[FloatArray, float]:
     """U⁻ᵀ and det U of a 3 × 3 array, from its cofactors."""
     V = np.empty((3, 3), dtype=U.dtype)

@@ -1,7 +1,6 @@
 r"""The element: points contracted with shape functions, quaternions reduced to spins, enhanced modes condensed.
 
-Everything nonlinear happens at the points (section.py), where x = G v with the same constant map G (shape functions at
-the parent points) for every element. Nodes carry quaternions, equations carry spins: q(ϑ) = exp(ϑ/2) q has the constant
+Everything nonlinear happens at the points (section.py), where x = G v with a constant map G (shape functions). Nodes carry quaternions, equations carry spins: q(ϑ) = exp(ϑ/2) q has the constant
 first derivative T = ∂q/∂ϑ and the second derivative -¼ δ_ab q. With T̂ the identity but for a block T per node,
 
     r = Σ T̂ᵀGᵀ g,      K = Σ T̂ᵀGᵀ H G T̂ - ¼ (q · r_q) I on each node's spins.
@@ -19,38 +18,12 @@ q (4 × 4) or ϑ (3 × 4), α (3 × 2).
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from magshell.compiled import inline
+from magshell.shell.interpolation import Interpolation
 from magshell.shell.section import ENHANCED, PHI, Q, Q1, U1, W1, W
-from magshell.shell.shape_functions import bilinear, serendipity
 from magshell.typing import FloatArray, IntArray
-
-
-class Interpolation(NamedTuple):
-    """Shape functions at the integration points.
-
-    Attributes
-    ----------
-    du : ndarray, shape (points, 2, 8)
-        Parent derivatives of the functions of u, on all nodes.
-    rest, d_rest : ndarray, shape (points, 4) and (points, 2, 4)
-        Functions of w, φ and q, on the corners, and their parent derivatives.
-    """
-
-    du: FloatArray
-    rest: FloatArray
-    d_rest: FloatArray
-
-
-def interpolation(parent: FloatArray) -> Interpolation:
-    """Functions of the paper's element: 8 nodes for u, 4 corners for the rest."""
-    rest, d_rest = bilinear(parent)
-    return Interpolation(
-        *(np.ascontiguousarray(a) for a in (serendipity(parent)[1], rest, d_rest))
-    )
 
 
 @inline
@@ -81,7 +54,9 @@ def gather(
 
 
 @inline
-def point_values(shape: Interpolation, p: int, enhancement: FloatArray, v: FloatArray, x: FloatArray) -> None:
+def point_values(
+    shape: Interpolation, p: int, director: FloatArray, enhancement: FloatArray, v: FloatArray, x: FloatArray
+) -> None:
     """x = G v at point p."""
     count, rest, modes = shape.du.shape[2], shape.rest.shape[1], enhancement.size
     for i in range(3):
@@ -93,9 +68,9 @@ def point_values(shape: Interpolation, p: int, enhancement: FloatArray, v: Float
         at = 3 * count + i * rest
         s0, s1, s2 = 0.0, 0.0, 0.0
         for n in range(rest):
-            s0 += shape.rest[p, n] * v[at + n]
-            s1 += shape.d_rest[p, 0, n] * v[at + n]
-            s2 += shape.d_rest[p, 1, n] * v[at + n]
+            s0 += director[0, n] * v[at + n]
+            s1 += director[1, n] * v[at + n]
+            s2 += director[2, n] * v[at + n]
         x[W + i], x[W1 + i], x[W1 + 3 + i] = s0, s1, s2
         s0 = 0.0
         for m in range(modes):
@@ -130,7 +105,14 @@ def spin_derivatives(v: FloatArray, count: int, rest: int, T: FloatArray) -> Non
 
 @inline
 def contract(
-    shape: Interpolation, p: int, enhancement: FloatArray, T: FloatArray, H: FloatArray, scratch: FloatArray, out: FloatArray
+    shape: Interpolation,
+    p: int,
+    director: FloatArray,
+    enhancement: FloatArray,
+    T: FloatArray,
+    H: FloatArray,
+    scratch: FloatArray,
+    out: FloatArray,
 ) -> None:
     """out += T̂ᵀGᵀ H at point p: rows of the point (31) become rows of the element, whatever the columns are."""
     count, rest, modes, width = shape.du.shape[2], shape.rest.shape[1], enhancement.size, H.shape[1]
@@ -142,7 +124,7 @@ def contract(
                 row[j] += a1 * h1[j] + a2 * h2[j]
         h, h1, h2 = H[W + i], H[W1 + i], H[W1 + 3 + i]
         for n in range(rest):
-            row, a, a1, a2 = out[3 * count + i * rest + n], shape.rest[p, n], shape.d_rest[p, 0, n], shape.d_rest[p, 1, n]
+            row, a, a1, a2 = out[3 * count + i * rest + n], director[0, n], director[1, n], director[2, n]
             for j in range(width):
                 row[j] += a * h[j] + a1 * h1[j] + a2 * h2[j]
         h = H[ENHANCED + i]

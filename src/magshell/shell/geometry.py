@@ -1,4 +1,4 @@
-"""Geometry of the undeformed mid-surface at the integration points, from the isoparametric 8-node surface."""
+"""Geometry of the undeformed shell at the integration points: isoparametric 8-node surface, normals at the corners."""
 
 from __future__ import annotations
 
@@ -6,29 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from magshell.shell.shape_functions import gauss_legendre, serendipity
+from magshell.shell.interpolation import Interpolation
+from magshell.shell.shape_functions import serendipity
 from magshell.typing import FloatArray
-
-
-class Surface(NamedTuple):
-    """Base vectors of the mid-surface at parent points of every element.
-
-    Attributes
-    ----------
-    A : ndarray, shape (elements, points, 2, 3)
-        Covariant base A_α = X,α, m.
-    D : ndarray, shape (elements, points, 3)
-        Unit normal A_1 × A_2 / |A_1 × A_2|.
-    dD : ndarray, shape (elements, points, 2, 3)
-        Its derivatives D,α.
-    area : ndarray, shape (elements, points)
-        √A = |A_1 × A_2|, m² per parent area.
-    """
-
-    A: FloatArray
-    D: FloatArray
-    dD: FloatArray
-    area: FloatArray
 
 
 class SectionGeometry(NamedTuple):
@@ -36,12 +16,16 @@ class SectionGeometry(NamedTuple):
 
     Attributes
     ----------
-    A, D, dD : ndarray
-        As in `Surface`.
+    A : ndarray, shape (elements, p, 2, 3)
+        Covariant base A_α = X,α of the mid-surface, m.
+    D, dD : ndarray, shape (elements, p, 3) and (elements, p, 2, 3)
+        Unit director of the undeformed shell and its derivatives D,α.
+    director : ndarray, shape (elements, p, 3, corners)
+        Functions of the director displacement and their two derivatives.
     z : ndarray, shape (k,)
         Levels, m.
     G : ndarray, shape (elements, p, k, 3, 3)
-        Contravariant base at the level, G^i = Q⁻¹ A^i, Q = I - z B; rows G^1, G^2, D; 1/m.
+        Contravariant base at the level, G^i = Q⁻¹ A^i, Q = I - z B; rows G^1, G^2, G^3; 1/m.
     volume : ndarray, shape (elements, p, k)
         det Q √A times all weights, m³.
     metric : ndarray, shape (elements, p, 2, 2)
@@ -53,6 +37,7 @@ class SectionGeometry(NamedTuple):
     A: FloatArray
     D: FloatArray
     dD: FloatArray
+    director: FloatArray
     z: FloatArray
     G: FloatArray
     volume: FloatArray
@@ -60,24 +45,30 @@ class SectionGeometry(NamedTuple):
     enhancement: FloatArray
 
 
-def surface_at(corner_coordinates: FloatArray, parent: FloatArray) -> Surface:
-    """Base vectors of elements with nodes (elements, 8, 3), m, at parent points (points, 2)."""
-    _, derivatives, second = serendipity(parent)
-    A = np.einsum("pan,enx->epax", derivatives, corner_coordinates)
-    A_11, A_22, A_12 = np.moveaxis(np.einsum("pan,enx->epax", second, corner_coordinates), 2, 0)
-    A_1, A_2 = A[:, :, 0], A[:, :, 1]
-    normal = np.cross(A_1, A_2)
-    area = np.linalg.norm(normal, axis=-1)
-    D = normal / area[..., None]
-    slope = np.stack(
-        [np.cross(A_11, A_2) + np.cross(A_1, A_12), np.cross(A_12, A_2) + np.cross(A_1, A_22)], axis=2
-    )
-    slope -= np.einsum("epax,epx->epa", slope, D)[..., None] * D[:, :, None, :]
-    return Surface(A, D, slope / area[:, :, None, None], area)
+def director_functions(normals: FloatArray, N: FloatArray, dN: FloatArray) -> FloatArray:
+    r"""Functions Ñ_I = N_I / ν and their derivatives, with ν = |Σ N_I D_I|: (elements, points, 3, corners).
+
+    The undeformed director is the interpolated normal made a unit vector, D = Σ Ñ_I D_I, and d = Σ Ñ_I (D_I + w_I).
+    A rigid rotation w_I = (R - I) D_I then gives d = R D exactly at every point. (With the surface's own normal at the
+    point in place of Σ Ñ_I D_I it does not: one element of the gripper turned by 77° shows the forces of a stretch of
+    0.03–0.1 %, and its linear rotations are not zero-energy modes. The two differ by O(h³) at the Gauss points.)
+
+    Parameters
+    ----------
+    normals : ndarray, shape (elements, corners, 3)
+    N, dN : ndarray, shape (points, corners) and (points, 2, corners)
+    """
+    mean = np.einsum("pn,enx->epx", N, normals)
+    slope = np.einsum("pan,enx->epax", dN, normals)
+    ν = np.linalg.norm(mean, axis=-1)
+    dν = np.einsum("epax,epx->epa", slope, mean) / ν[..., None]
+    values = N / ν[..., None]
+    derivatives = dN / ν[..., None, None] - values[:, :, None] * (dν / ν[..., None])[..., None]
+    return np.concatenate([values[:, :, None], derivatives], axis=2)
 
 
 def section_geometry(
-    node_coordinates: FloatArray, parent: FloatArray, weights: FloatArray, thickness: float, levels: int
+    node_coordinates: FloatArray, normals: FloatArray, shape: Interpolation, thickness: float, levels: int
 ) -> SectionGeometry:
     """Geometry at the points of a surface rule, with a Gauss rule of `levels` points through the thickness.
 
@@ -85,29 +76,28 @@ def section_geometry(
     ----------
     node_coordinates : ndarray, shape (elements, 8, 3)
         m.
-    parent, weights : ndarray, shape (points, 2) and (points,)
-        Rule on the parent square.
+    normals : ndarray, shape (elements, corners, 3)
+        Unit normals at the corners, shared by the elements that meet there.
+    shape : Interpolation
     thickness : float
         m.
     levels : int
         Gauss points through the thickness.
     """
-    surface = surface_at(node_coordinates, parent)
+    A = np.einsum("pan,enx->epax", shape.du, node_coordinates)
+    director = director_functions(normals, shape.rest, shape.d_rest)
+    D, dD = (np.einsum("epan,enx->epax", director[:, :, rows], normals) for rows in (slice(0, 1), slice(1, 3)))
     z_parent, z_weights = np.polynomial.legendre.leggauss(levels)
     z = 0.5 * thickness * z_parent
-    covariant = surface.A[:, :, None] + z[:, None, None] * surface.dD[:, :, None]
-    D = np.broadcast_to(surface.D[:, :, None, None, :], (*covariant.shape[:3], 1, 3))
-    base = np.concatenate([covariant, D], axis=3)
+    covariant = A[:, :, None] + z[:, None, None] * dD[:, :, None]
+    base = np.concatenate([covariant, np.broadcast_to(D[:, :, None], (*covariant.shape[:3], 1, 3))], axis=3)
     G = np.swapaxes(np.linalg.inv(base), -1, -2)
-    volume = np.linalg.det(base) * (0.5 * thickness * z_weights) * weights[:, None]
+    volume = np.linalg.det(base) * (0.5 * thickness * z_weights) * shape.weights[:, None]
     metric = np.einsum("epk,epkax,epkbx->epab", volume, G[..., :2, :], G[..., :2, :])
-    centre = surface_at(node_coordinates, np.zeros((1, 2))).area
-    enhancement = (centre / surface.area)[..., None] * parent
+    area = np.linalg.norm(np.cross(A[:, :, 0], A[:, :, 1]), axis=-1)
+    centre = np.einsum("pan,enx->epax", serendipity(np.zeros((1, 2)))[1], node_coordinates)
+    centre_area = np.linalg.norm(np.cross(centre[:, :, 0], centre[:, :, 1]), axis=-1)
+    enhancement = (centre_area / area)[..., None] * shape.parent
     return SectionGeometry(
-        *(np.ascontiguousarray(a) for a in (surface.A, surface.D, surface.dD, z, G, volume, metric, enhancement))
+        *(np.ascontiguousarray(a) for a in (A, D[:, :, 0], dD, director, z, G, volume, metric, enhancement))
     )
-
-
-def surface_rule(points_per_direction: int = 2) -> tuple[FloatArray, FloatArray]:
-    """The element's surface rule: 2 × 2 Gauss points."""
-    return gauss_legendre(points_per_direction)

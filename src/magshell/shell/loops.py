@@ -14,7 +14,6 @@ from magshell.compiled import inline, jit
 from magshell.magnetics.law import Coupling
 from magshell.materials.law import Material
 from magshell.shell.element import (
-    Interpolation,
     add_radial_force,
     condense,
     contract,
@@ -24,7 +23,9 @@ from magshell.shell.element import (
     transpose,
 )
 from magshell.shell.geometry import SectionGeometry
+from magshell.shell.interpolation import Interpolation
 from magshell.shell.section import SIZE, predicted_stress, section, workspace
+from magshell.shell.state import State
 from magshell.typing import FloatArray, IntArray
 
 COMPONENTS = 10
@@ -47,16 +48,6 @@ class Body(NamedTuple):
     geometry: SectionGeometry
     shape: Interpolation
     remanence: FloatArray
-
-
-class Values(NamedTuple):
-    """A state, as arrays: u (nodes, 3), w (nodes, 3), phi (nodes,), q (nodes, 4), alpha (elements, modes, 3)."""
-
-    u: FloatArray
-    w: FloatArray
-    phi: FloatArray
-    q: FloatArray
-    alpha: FloatArray
 
 
 class Stresses(NamedTuple):
@@ -177,7 +168,7 @@ def assemble(
     coupling: Coupling,
     B: FloatArray,
     body: Body,
-    state: Values,
+    state: State,
     stresses: Stresses,
     mixed: bool,
     tangent: bool,
@@ -212,20 +203,20 @@ def assemble(
         Kt[:, :] = 0.0
         radial[:] = 0.0
         for p in range(points):
-            modes_here = geometry.enhancement[e, p]
-            point_values(shape, p, modes_here, v, x)
+            director, modes_here = geometry.director[e, p], geometry.enhancement[e, p]
+            point_values(shape, p, director, modes_here, v, x)
             J = section(
                 material, couple_modulus, coupling, B, geometry, body.remanence, e, p, x,
                 stresses.P[e, p], stresses.kappa[e, p], mixed, tangent, w, g, g_mixed, H,
             )  # fmt: skip
             if not J > 0.0:
                 return e, J
-            contract(shape, p, modes_here, T, g, scratch_2, r)
+            contract(shape, p, director, modes_here, T, g, scratch_2, r)
             if tangent:
                 GH[:, :] = 0.0
-                contract(shape, p, modes_here, T, H, scratch, GH)
+                contract(shape, p, director, modes_here, T, H, scratch, GH)
                 transpose(GH, HG)
-                contract(shape, p, modes_here, T, HG, scratch, Kt)
+                contract(shape, p, director, modes_here, T, HG, scratch, Kt)
                 add_radial_force(shape, p, g_mixed, v, radial)
         for l in range(nodal):
             c = kind_of[l]
@@ -297,7 +288,7 @@ def recover_enhancement(
 
 @jit
 def predict_stresses(
-    material: Material, body: Body, state: Values, increment: FloatArray, d_alpha: FloatArray, stresses: Stresses
+    material: Material, body: Body, state: State, increment: FloatArray, d_alpha: FloatArray, stresses: Stresses
 ) -> None:
     """Fill the stresses predicted linearly from `state` for a nodal increment (nodes, 10) and Δα."""
     shape, geometry = body.shape, body.geometry
@@ -324,6 +315,6 @@ def predict_stresses(
             for i in range(3):
                 dv[at + 4 * rest + i * modes + m] = d_alpha[e, m, i]
         for p in range(points):
-            point_values(shape, p, geometry.enhancement[e, p], v, x)
-            point_values(shape, p, geometry.enhancement[e, p], dv, dx)
+            point_values(shape, p, geometry.director[e, p], geometry.enhancement[e, p], v, x)
+            point_values(shape, p, geometry.director[e, p], geometry.enhancement[e, p], dv, dx)
             predicted_stress(material, geometry, e, p, x, dx, w, stresses.P[e, p], stresses.kappa[e, p])

@@ -29,11 +29,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from magshell.compiled import choose_by_type, inline
+from magshell.compiled import also_compiled, choose_by_type, inline
 from magshell.magnetics import law as coupling_laws
 from magshell.magnetics.law import Coupling
 from magshell.materials import law as material_laws
 from magshell.materials.law import Material
+from magshell.materials.tensors import inverse_transpose
 from magshell.shell.geometry import SectionGeometry
 from magshell.shell.rotation import rotation_matrix, spin_map, wryness_maps
 from magshell.typing import FloatArray
@@ -59,6 +60,7 @@ def _forces_and_tangent(
     """Stand-in that the compiler replaces by the function of the law in use."""
 
 
+also_compiled(inverse_transpose)
 choose_by_type(_stress_and_tangent, material_laws.stresses_of)
 choose_by_type(_forces_and_tangent, coupling_laws.forces_of)
 

@@ -1,0 +1,304 @@
+"""From the model to equations: numbering, the matrix pattern (built once), residual and tangent of a state."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import scipy.sparse as sp
+
+from magshell.model import Model
+from magshell.shell import loops
+from magshell.shell.geometry import section_geometry
+from magshell.shell.interpolation import surface_rule
+from magshell.shell.shape_functions import serendipity
+from magshell.shell.state import State
+from magshell.typing import FloatArray, IntArray
+
+if TYPE_CHECKING:
+    from magshell.mesh import Mesh
+
+LEVELS = 2
+KINDS = ("u", "w", "phi", "omega", "alpha")
+_COLUMNS = (slice(0, 3), slice(3, 6), slice(6, 7), slice(7, 10))
+Ordering = Callable[[sp.csr_array], IntArray]
+
+
+class InvertedElement(ArithmeticError):
+    """A trial state turns an element inside out."""
+
+    def __init__(self, element: int, determinant: float) -> None:
+        super().__init__(element, determinant)
+        self.element, self.determinant = element, determinant
+
+
+class Assembly(NamedTuple):
+    """Residual and tangent at a state.
+
+    Attributes
+    ----------
+    matrix : csc_array or None
+        Condensed tangent of the free unknowns.
+    right_side : ndarray, shape (dofs,)
+        Minus the condensed residual and the imposed increments' share.
+    residual : ndarray, shape (nodes, 10)
+        Internal minus external forces in the nodes' frames; at held components the reactions.
+    relative : dict of str to float
+        Residual by kind of unknown over the elements' internal and magnetic forces of that kind.
+    """
+
+    matrix: sp.csc_array | None
+    right_side: FloatArray
+    residual: FloatArray
+    relative: dict[str, float]
+
+    @property
+    def worst(self) -> tuple[str, float]:
+        """Kind with the largest relative residual, and that."""
+        return max(self.relative.items(), key=lambda item: item[1])
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """Sparsity of the tangent, compressed columns, equations in elimination order."""
+
+    indptr: IntArray
+    indices: IntArray
+    dofs: int
+
+
+class Discretisation:
+    """The model's equations.
+
+    Parameters
+    ----------
+    model : Model
+    ordering : callable
+        From the node graph (nodes, nodes) to the nodes' elimination order.
+
+    Attributes
+    ----------
+    model : Model
+    mesh : Mesh
+    dofs : int
+        Free unknowns.
+    """
+
+    def __init__(self, model: Model, ordering: Ordering) -> None:
+        self.model, self.mesh = model, model.shell.mesh
+        mesh = self.mesh
+        shape = surface_rule()
+        corners = mesh.elements[:, : shape.rest.shape[1]]
+        coordinates = mesh.points[mesh.elements]
+        geometry = section_geometry(coordinates, model.normals[corners], shape, model.shell.thickness, LEVELS)
+        _check_thickness(mesh, geometry.volume)
+        positions = np.einsum("pn,enx->epx", serendipity(shape.parent)[0], coordinates)
+        remanence = np.ascontiguousarray(model.shell.remanence(mesh, positions), dtype=float)
+        self.body = loops.Body(np.ascontiguousarray(mesh.elements), geometry, shape, remanence)
+        self.modes = geometry.enhancement.shape[2]
+        self.rest = self.body.shape.rest.shape[1]
+        self._number_equations(ordering)
+        elements, values = len(mesh.elements), 3 * mesh.elements.shape[1] + 7 * self.rest
+        self._out = loops.Assembled(
+            np.zeros(self.pattern.indices.size),
+            np.zeros((len(mesh.points), loops.COMPONENTS)),
+            np.zeros((len(mesh.points), loops.COMPONENTS)),
+            np.zeros((elements, 3 * self.modes, values)),
+            np.zeros((elements, 3 * self.modes)),
+            np.zeros((len(KINDS), 3)),
+        )
+
+    def _number_equations(self, ordering: Ordering) -> None:
+        mesh, constraints = self.mesh, self.model.constraints
+        nodes, per_element = len(mesh.points), mesh.elements.shape[1]
+        carried = np.zeros((nodes, loops.COMPONENTS), dtype=bool)
+        carried[:, :3] = True
+        carried[mesh.corner_nodes] = True
+        free = carried & ~constraints.fixed
+        self.carried, self.free = carried, free
+        incidence = sp.csr_array(
+            (np.ones(mesh.elements.size, dtype=np.int32), mesh.elements.ravel(), np.arange(0, mesh.elements.size + 1, per_element)),
+            shape=(len(mesh.elements), nodes),
+        )
+        graph = sp.csr_array(incidence.T @ incidence)
+        order = ordering(graph)
+        counts = free.sum(axis=1)
+        first = np.empty(nodes, dtype=np.int64)
+        first[order] = np.cumsum(counts[order]) - counts[order]
+        rank = np.cumsum(free, axis=1) - 1
+        number = np.where(free, first[:, None] + rank, -1)
+        self.pattern, row_offset = _pattern(graph, order, counts)
+        local_node = np.concatenate([np.tile(np.arange(per_element), 3), np.tile(np.arange(self.rest), 7)])
+        local_component = np.concatenate([np.repeat(np.arange(3), per_element), np.repeat(np.arange(3, 10), self.rest)])
+        pairs = mesh.elements
+        offset = np.asarray(
+            row_offset[
+                np.repeat(pairs, per_element, axis=1).ravel(), np.tile(pairs, (1, per_element)).ravel()
+            ]
+        ).reshape(len(pairs), per_element, per_element) - 1
+        self.equations = loops.Equations(
+            local_node.astype(np.int64),
+            local_component.astype(np.int64),
+            number,
+            rank,
+            self.pattern.indptr,
+            offset,
+            np.ascontiguousarray(constraints.frame_of),
+            np.ascontiguousarray(constraints.frames),
+        )
+        self.dofs = self.pattern.dofs
+        self._free_index = number[free]
+
+    # -- what the solver sees ------------------------------------------------------------------------------------
+
+    def undeformed(self) -> State:
+        """State of no deformation."""
+        return State.undeformed(len(self.mesh.points), len(self.mesh.elements), self.modes)
+
+    def stresses_at(self, state: State) -> loops.Stresses:
+        """Stresses of the state itself, as a start for the mixed tangent."""
+        return self.predicted_stresses(
+            state, np.zeros((len(self.mesh.points), loops.COMPONENTS)), np.zeros_like(state.alpha)
+        )
+
+    def predicted_stresses(self, state: State, increment: FloatArray, d_alpha: FloatArray) -> loops.Stresses:
+        """Stresses predicted linearly from a state for a nodal increment (nodes, 10) and Δα."""
+        elements, points, levels = self.body.geometry.volume.shape
+        stresses = loops.Stresses(np.empty((elements, points, levels, 3, 3)), np.empty((elements, points, 2, 3)))
+        loops.predict_stresses(self.model.shell.material, self.body, state, increment, d_alpha, stresses)
+        return stresses
+
+    def assemble(
+        self,
+        state: State,
+        load_factor: float,
+        stresses: loops.Stresses | None = None,
+        imposed: FloatArray | None = None,
+        tangent: bool = True,
+    ) -> Assembly:
+        """Residual and tangent of a state.
+
+        Parameters
+        ----------
+        state : State
+        load_factor : float
+        stresses : Stresses, optional
+            For the geometric part of the mixed tangent; None: the state's own, the plain tangent.
+        imposed : ndarray, shape (nodes, 10), optional
+            Increments of held components, in the nodes' frames, that the right side accounts for.
+        tangent : bool
+            Without it only the residual is made.
+
+        Raises
+        ------
+        InvertedElement
+            det F is not positive at a point of an element.
+        """
+        model, out = self.model, self._out
+        elements, points, levels = self.body.geometry.volume.shape
+        mixed = stresses is not None
+        if stresses is None:
+            stresses = loops.Stresses(
+                np.broadcast_to(np.zeros(()), (elements, points, levels, 3, 3)),
+                np.broadcast_to(np.zeros(()), (elements, points, 2, 3)),
+            )
+        if imposed is None:
+            imposed = np.zeros_like(out.residual)
+        element, determinant = loops.assemble(
+            model.shell.material, model.shell.material.couple_modulus, model.coupling,
+            load_factor * model.field.vector, self.body, state, stresses, mixed, tangent, imposed,
+            self.equations, out,
+        )  # fmt: skip
+        if element >= 0:
+            raise InvertedElement(element, determinant)
+        right_side = np.zeros(self.dofs)
+        matrix = None
+        if tangent:
+            right_side[self._free_index] = -out.condensed[self.free]
+            matrix = sp.csc_array((out.data, self.pattern.indices, self.pattern.indptr), shape=(self.dofs, self.dofs))
+        return Assembly(matrix, right_side, out.residual.copy(), self._relative_residual())
+
+    def _relative_residual(self) -> dict[str, float]:
+        squares, residual = self._out.scale, np.where(self.free, self._out.residual, 0.0)
+        norms = [float(np.linalg.norm(residual[:, columns])) for columns in _COLUMNS] + [float(np.sqrt(squares[4, 2]))]
+        scales = np.sqrt(squares[:, 0] + squares[:, 1])
+        return {
+            kind: norm / scale if scale > 0.0 else 0.0
+            for kind, norm, scale in zip(KINDS, norms, scales.tolist(), strict=True)
+        }
+
+    def expand(self, solution: FloatArray, imposed: FloatArray | None = None) -> FloatArray:
+        """Nodal increment (nodes, 10) in global axes of free unknowns (dofs,) and imposed components."""
+        increment = np.zeros((len(self.mesh.points), loops.COMPONENTS)) if imposed is None else imposed.copy()
+        increment[self.free] = solution[self._free_index]
+        return self.to_global(increment)
+
+    def to_global(self, nodal: FloatArray) -> FloatArray:
+        """Turn nodal columns (nodes, 10) from the nodes' frames to the global axes."""
+        return self._turned(nodal, "nji,nj->ni")
+
+    def to_frames(self, nodal: FloatArray) -> FloatArray:
+        """Turn nodal columns (nodes, 10) from the global axes to the nodes' frames."""
+        return self._turned(nodal, "nij,nj->ni")
+
+    def _turned(self, nodal: FloatArray, rule: str) -> FloatArray:
+        turned, constraints = nodal.copy(), self.model.constraints
+        for field, columns in enumerate((_COLUMNS[0], _COLUMNS[1], _COLUMNS[3])):
+            oblique = np.flatnonzero(constraints.frame_of[:, field] >= 0)
+            frames = constraints.frames[constraints.frame_of[oblique, field]]
+            turned[oblique, columns] = np.einsum(rule, frames, nodal[oblique, columns])
+        return turned
+
+    def imposed(self, d_factor: float) -> FloatArray:
+        """Increments (nodes, 10) of the held components, in the nodes' frames, for an increment of the load factor."""
+        return np.where(self.model.constraints.fixed, d_factor * self.model.constraints.value, 0.0)
+
+    def with_imposed(self, increment: FloatArray, d_factor: float) -> FloatArray:
+        """A nodal increment in global axes whose held components are put to what the load factor asks."""
+        local = self.to_frames(increment)
+        fixed = self.model.constraints.fixed
+        local[fixed] = self.imposed(d_factor)[fixed]
+        return self.to_global(local)
+
+    def recover(self, increment: FloatArray) -> FloatArray:
+        """Δα (elements, modes, 3) of the last assembled tangent for a nodal increment in global axes."""
+        d_alpha = np.empty((len(self.mesh.elements), self.modes, 3))
+        loops.recover_enhancement(self.body.elements, self.rest, increment, self._out.gain, self._out.offset, d_alpha)
+        return d_alpha
+
+
+def _pattern(graph: sp.csr_array, order: IntArray, counts: IntArray) -> tuple[Pattern, sp.csr_array]:
+    """Pattern of the matrix, and for node pairs (column, row) one plus the row's offset in the column."""
+    nodes = len(order)
+    ordered = sp.csr_array(graph[order][:, order])
+    ordered.sort_indices()
+    block = counts[order]
+    lengths = block[ordered.indices]
+    ends = np.cumsum(lengths)
+    starts = ends - lengths
+    column_start = np.append(starts, ends[-1] if len(ends) else 0)[ordered.indptr]
+    within = starts - np.repeat(column_start[:-1], np.diff(ordered.indptr))
+    coordinates = (order[np.repeat(np.arange(nodes), np.diff(ordered.indptr))], order[ordered.indices])
+    row_offset = sp.csr_array(sp.coo_array((within + 1, coordinates), shape=graph.shape))
+    first_equation = np.cumsum(block) - block
+    rows = np.repeat(first_equation[ordered.indices] - starts, lengths) + np.arange(ends[-1])
+    node_of_column = np.repeat(np.arange(nodes), block)
+    column_length = np.diff(column_start)[node_of_column]
+    indptr = np.append(0, np.cumsum(column_length))
+    index = np.arange(indptr[-1]) + np.repeat(column_start[node_of_column] - indptr[:-1], column_length)
+    return Pattern(indptr, rows[index].astype(np.int32), len(node_of_column)), row_offset
+
+
+def _check_thickness(mesh: Mesh, volume: FloatArray) -> None:
+    """A shell thicker than twice its radius of curvature has layers of negative volume."""
+    from magshell.errors import InputError
+
+    bad = np.flatnonzero((volume <= 0.0).any(axis=(1, 2)))
+    if bad.size:
+        raise InputError(
+            f"shell: thickness is larger than the curvature of element {bad[0]} allows (it would overlap itself inside)"
+        )
+
+

@@ -1,0 +1,82 @@
+"""Rigid motions that the supports leave free, found and named before any solve."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from magshell.errors import InputError
+from magshell.mesh import Mesh
+from magshell.supports import Constraints
+from magshell.typing import FloatArray, IntArray
+
+
+def free_motions(points: FloatArray, normals: FloatArray, nodes: IntArray, constraints: Constraints) -> FloatArray:
+    """Basis (motions, 6) of the rigid motions of some nodes that no support resists.
+
+    Columns: translation, then rotation about the nodes' centre (times their size, so that all have one unit).
+    """
+    centre = points[nodes].mean(axis=0)
+    size = float(np.ptp(points[nodes], axis=0).max())
+    arm = (points[nodes] - centre) / size
+    rotation = np.eye(3)
+    # motion of u, w and ω under three translations and three rotations: (nodes, 3, 6)
+    u = np.concatenate([np.broadcast_to(rotation, (len(nodes), 3, 3)), -_cross(arm)], axis=2)
+    w = np.concatenate([np.zeros((len(nodes), 3, 3)), -_cross(normals[nodes])], axis=2)
+    ω = np.concatenate([np.zeros((len(nodes), 3, 3)), np.broadcast_to(rotation, (len(nodes), 3, 3))], axis=2)
+    rows = []
+    for field, (motion, column) in enumerate(((u, 0), (w, 3), (ω, 7))):
+        frame = constraints.frame_of[nodes, field]
+        turned = motion.copy()
+        oblique = frame >= 0
+        turned[oblique] = constraints.frames[frame[oblique]] @ motion[oblique]
+        rows.append(turned[constraints.fixed[nodes, column : column + 3]])
+    matrix = np.concatenate([*rows, np.zeros((6, 6))])
+    _, singular, basis = np.linalg.svd(matrix.T @ matrix)
+    return np.asarray(basis[singular < 1e-12 * max(float(singular[0]), 1.0)])
+
+
+def _cross(vectors: FloatArray) -> FloatArray:
+    """Matrices [v]× (n, 3, 3)."""
+    zero = np.zeros(len(vectors))
+    x, y, z = vectors.T
+    return np.stack(
+        [np.stack(row, axis=-1) for row in ((zero, -z, y), (z, zero, -x), (-y, x, zero))], axis=-2
+    )
+
+
+def check_supported(mesh: Mesh, normals: FloatArray, constraints: Constraints) -> None:
+    """Raise an InputError that names the free rigid motion of a part that can still move."""
+    parts = mesh.parts
+    for number, elements in enumerate(parts):
+        nodes = np.unique(mesh.elements[elements])
+        motions = free_motions(mesh.points, normals, nodes, constraints)
+        if len(motions) == 0:
+            continue
+        which = "the body" if len(parts) == 1 else f"part {number + 1} of {len(parts)} (element {elements[0]} …)"
+        if len(motions) == 6:
+            raise InputError(
+                f"supports: {which} floats freely, nothing holds it. Add a clamp, or supports against "
+                "three translations and three rotations"
+            )
+        raise InputError(f"supports: {which} can still move as a rigid body: {_describe(motions)}. Add a support against it")
+
+
+def _describe(motions: FloatArray) -> str:
+    """Name translations first, then what is left as rotations."""
+    named = []
+    translations = np.linalg.svd(motions[:, 3:].T)[2] @ motions
+    for motion in translations:
+        if np.linalg.norm(motion[3:]) < 1e-6 * np.linalg.norm(motion):
+            named.append("translation along " + _direction(motion[:3]))
+        else:
+            named.append("rotation about " + _direction(motion[3:]))
+    return " and ".join(sorted(named, reverse=True))
+
+
+def _direction(vector: FloatArray) -> str:
+    unit = vector / np.linalg.norm(vector)
+    axis = int(np.argmax(np.abs(unit)))
+    if abs(unit[axis]) > 1.0 - 1e-9:
+        return f"X{axis + 1}"
+    unit = unit * np.sign(unit[axis])
+    return "({:.3g}, {:.3g}, {:.3g})".format(*unit)

@@ -1,0 +1,56 @@
+"""State of the shell: nodal fields and enhanced parameters."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from magshell.shell import rotation
+from magshell.typing import FloatArray
+
+
+class State(NamedTuple):
+    """Immutable by convention: updates make a new one.
+
+    Attributes
+    ----------
+    u : ndarray, shape (nodes, 3)
+        Mid-surface displacement, m.
+    w : ndarray, shape (nodes, 3)
+        Director displacement d - D, on corner nodes.
+    phi : ndarray, shape (nodes,)
+        Linear thickness stretch, 1/m, on corner nodes.
+    q : ndarray, shape (nodes, 4)
+        Micro-rotation as unit quaternions, scalar first, on corner nodes (elsewhere the identity).
+    alpha : ndarray, shape (elements, modes, 3)
+        Enhanced parameters.
+    """
+
+    u: FloatArray
+    w: FloatArray
+    phi: FloatArray
+    q: FloatArray
+    alpha: FloatArray
+
+    @classmethod
+    def undeformed(cls, nodes: int, elements: int, modes: int) -> State:
+        """All zero, no rotation."""
+        zeros = np.zeros((nodes, 3))
+        return cls(zeros, zeros.copy(), np.zeros(nodes), rotation.identity(nodes), np.zeros((elements, modes, 3)))
+
+    def moved(self, increment: FloatArray, d_alpha: FloatArray) -> State:
+        """State after a nodal increment (nodes, 10) of u, w, φ and spin, and Δα."""
+        return State(
+            self.u + increment[:, :3],
+            self.w + increment[:, 3:6],
+            self.phi + increment[:, 6],
+            rotation.compose(increment[:, 7:], self.q),
+            self.alpha + d_alpha,
+        )
+
+    def increment_from(self, other: State) -> tuple[FloatArray, FloatArray]:
+        """The nodal increment (nodes, 10) and Δα that move `other` to this state."""
+        spin = rotation.logarithm(rotation.product(self.q, rotation.conjugate(other.q)))
+        increment = np.concatenate([self.u - other.u, self.w - other.w, (self.phi - other.phi)[:, None], spin], axis=1)
+        return increment, self.alpha - other.alpha

@@ -1,0 +1,236 @@
+"""Supports: which components of which nodes are held, and at what value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from magshell.errors import InputError, suggest
+from magshell.mesh import Mesh
+from magshell.typing import FloatArray, IntArray
+
+FIELDS = ("u", "w", "phi", "omega")
+AXES = np.eye(3)
+
+
+class Condition(NamedTuple):
+    """direction · field = value at load factor 1, on every node of a group.
+
+    `optional` conditions skip nodes that do not carry the field (mid-side nodes carry only u).
+    """
+
+    group: str
+    field: str
+    direction: FloatArray
+    value: float
+    optional: bool
+
+
+class Support(Protocol):
+    """Anything that gives conditions."""
+
+    @property
+    def group(self) -> str:
+        """Group of nodes, edges or elements whose nodes are held."""
+
+    def conditions(self) -> Iterator[Condition]:
+        """The conditions."""
+
+
+def _fixed(group: str, field: str) -> Iterator[Condition]:
+    for axis in AXES:
+        yield Condition(group, field, axis, 0.0, optional=True)
+
+
+@dataclass(frozen=True)
+class Clamp:
+    """u = 0, w = 0 and no rotation; the thickness stretch φ stays free."""
+
+    group: str
+
+    def conditions(self) -> Iterator[Condition]:
+        """Nine per node."""
+        for field in ("u", "w", "omega"):
+            yield from _fixed(self.group, field)
+
+
+@dataclass(frozen=True)
+class SimpleSupport:
+    """u = 0; the section may turn."""
+
+    group: str
+
+    def conditions(self) -> Iterator[Condition]:
+        """Three per node."""
+        yield from _fixed(self.group, "u")
+
+
+@dataclass(frozen=True)
+class SymmetryPlane:
+    """Mirror plane with the given normal: u · n = 0, w · n = 0, and rotation about n only."""
+
+    group: str
+    normal: ArrayLike
+
+    def conditions(self) -> Iterator[Condition]:
+        """Four per node."""
+        normal = np.asarray(self.normal, dtype=float)
+        if normal.shape != (3,) or not np.all(np.isfinite(normal)) or not np.any(normal):
+            raise InputError(f"support on '{self.group}': normal is {self.normal}; it needs 3 components, not all zero")
+        normal = normal / np.linalg.norm(normal)
+        for field in ("u", "w"):
+            yield Condition(self.group, field, normal, 0.0, optional=True)
+        helper = AXES[np.argmin(np.abs(normal))]
+        first = np.cross(normal, helper)
+        first /= np.linalg.norm(first)
+        for tangent in (first, np.cross(normal, first)):
+            yield Condition(self.group, "omega", tangent, 0.0, optional=True)
+
+
+@dataclass(frozen=True)
+class Prescribe:
+    """A value at load factor 1 for a field, or one component of it, growing in proportion to the load factor.
+
+    Parameters
+    ----------
+    group : str
+        Group of nodes, edges or elements.
+    field : {"u", "w", "phi", "omega"}
+        Displacement (m), director displacement, thickness stretch (1/m), rotation (rad).
+    component : {1, 2, 3}, optional
+        None: all three (φ has none).
+    value : float or array_like, shape (3,)
+        A vector where all three components are meant; one number holds for each component named.
+    """
+
+    group: str
+    field: str
+    component: int | None = None
+    value: ArrayLike = 0.0
+
+    def conditions(self) -> Iterator[Condition]:
+        """One per component."""
+        where = f"support on '{self.group}'"
+        if self.field not in FIELDS:
+            raise InputError(f"{where}: field is '{self.field}'. {suggest(self.field, FIELDS)}")
+        value = np.asarray(self.value, dtype=float)
+        if not np.all(np.isfinite(value)):
+            raise InputError(f"{where}: value is {self.value}; it must be finite")
+        if self.field == "phi" or self.component is not None:
+            if self.field == "phi" and self.component is not None:
+                raise InputError(f"{where}: phi is a scalar, it has no component {self.component}; leave it out")
+            if self.component not in (None, 1, 2, 3):
+                raise InputError(f"{where}: component is {self.component}; allowed are 1, 2, 3")
+            if value.shape != ():
+                raise InputError(f"{where}: value is {self.value}; one component takes one number")
+            axis = AXES[(self.component or 1) - 1]
+            yield Condition(self.group, self.field, axis, float(value), optional=False)
+            return
+        if value.shape not in ((), (3,)):
+            raise InputError(f"{where}: value has shape {value.shape}; all components take 3 numbers, or one for all")
+        for axis, component in zip(AXES, np.broadcast_to(value, 3), strict=True):
+            yield Condition(self.group, self.field, axis, float(component), optional=False)
+
+
+Supports: TypeAlias = Sequence[Support]
+
+
+class Constraints(NamedTuple):
+    """The resolved supports, by node and by column of the nodal arrays (u 0–2, w 3–5, φ 6, ω 7–9).
+
+    Attributes
+    ----------
+    fixed : ndarray of bool, shape (nodes, 10)
+        In the node's frame.
+    value : ndarray, shape (nodes, 10)
+        At load factor 1, in the node's frame.
+    frame_of : ndarray, shape (nodes, 3)
+        Frame of u, w and ω, -1 for the global axes.
+    frames : ndarray, shape (frames, 3, 3)
+        Rows are base vectors.
+    """
+
+    fixed: AnyBool
+    value: FloatArray
+    frame_of: IntArray
+    frames: FloatArray
+
+
+AnyBool: TypeAlias = np.typing.NDArray[np.bool_]
+_COLUMN = {"u": 0, "w": 3, "phi": 6, "omega": 7}
+_FRAME = {"u": 0, "w": 1, "omega": 2}
+
+
+def resolve(mesh: Mesh, supports: Supports) -> Constraints:
+    """Conditions of all supports as fixed components, with frames of their own where directions are oblique.
+
+    Raises
+    ------
+    InputError
+        Unknown group, a field that a node does not carry, supports that contradict each other.
+    """
+    nodes = len(mesh.points)
+    fixed, value = np.zeros((nodes, 10), dtype=bool), np.zeros((nodes, 10))
+    frame_of, frames = np.full((nodes, 3), -1), []
+    carries = np.zeros(nodes, dtype=bool)
+    carries[mesh.corner_nodes] = True
+    directions: dict[tuple[int, str], list[tuple[FloatArray, float, str]]] = {}
+    for support in supports:
+        for condition in support.conditions():
+            members = mesh.nodes_of(condition.group)
+            if condition.field != "u":
+                absent = members[~carries[members]]
+                if absent.size == members.size and not condition.optional:
+                    raise InputError(
+                        f"support on '{condition.group}': node {absent[0]} is a mid-side node, which carries only u; "
+                        f"'{condition.field}' needs corner nodes"
+                    )
+                members = members[carries[members]]
+            for node in members:
+                directions.setdefault((int(node), condition.field), []).append(
+                    (condition.direction, condition.value, condition.group)
+                )
+    for (node, field), wanted in directions.items():
+        column = _COLUMN[field]
+        base, values = _orthonormal(node, field, wanted)
+        if field == "phi":
+            fixed[node, column], value[node, column] = True, values[0]
+        elif np.all(np.max(np.abs(base), axis=1) > 1.0 - 1e-12):
+            for vector, held in zip(base, values, strict=True):
+                axis = int(np.argmax(np.abs(vector)))
+                fixed[node, column + axis], value[node, column + axis] = True, held * np.sign(vector[axis])
+        else:
+            frame_of[node, _FRAME[field]] = len(frames)
+            complement = np.linalg.svd(base)[2][len(base) :]
+            frames.append(np.vstack([base, complement]))
+            fixed[node, column : column + len(base)] = True
+            value[node, column : column + len(base)] = values
+    return Constraints(fixed, value, frame_of, np.array(frames).reshape(-1, 3, 3))
+
+
+def _orthonormal(
+    node: int, field: str, wanted: list[tuple[FloatArray, float, str]]
+) -> tuple[FloatArray, FloatArray]:
+    """Orthonormal directions and their values that say the same as all conditions of one node's field."""
+    base: list[FloatArray] = []
+    values: list[float] = []
+    for direction, value, group in wanted:
+        rest, left = direction.copy(), value
+        for vector, held in zip(base, values, strict=True):
+            rest = rest - (direction @ vector) * vector
+            left -= (direction @ vector) * held
+        length = float(np.linalg.norm(rest))
+        if length > 1e-9:
+            base.append(rest / length)
+            values.append(left / length)
+        elif abs(left) > 1e-9 * max(abs(value), *(abs(held) for held in values)):
+            others = sorted({other for _, _, other in wanted} - {group})
+            raise InputError(
+                f"supports contradict each other at node {node}: '{group}' wants another value of {field} than "
+                + (f"'{others[0]}'" if others else "an earlier support on the same group")
+            )
+    return np.array(base), np.array(values)
