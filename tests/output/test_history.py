@@ -67,27 +67,19 @@ def reject(constant):
 def test_summary(path, tmp_path):
     file = write_summary(path, tmp_path)
     summary = json.loads(file.read_text(encoding="utf-8"), parse_constant=reject)
-    final = path.steps[-1].state.u
     assert file == tmp_path / "summary.json"
-    assert summary == {
-        "solver": "SuperLU",
-        "linear_solves": 21,
-        "cpu_seconds": 0.125,
-        "converged": True,
-        "reason": "",
-        "steps": 4,
-        "iterations": 12,
-        "elements": 48,
-        "dofs": 1234,
-        "probes": {name: final[node].tolist() for name, node in path.model.probe_nodes.items()},
-    }
+    assert summary == {"converged": True, "reason": "", "linear_solves": 21, "cpu_seconds": 0.125}
 
 
 def test_summary_of_a_broken_off_path(path, tmp_path):
-    path.converged, path.reason = False, "the step became too small"
-    path.summary = {"residual": np.float64("nan"), "balance": {"work": float("inf")}, "sizes": np.arange(2)}
+    path.summary = {
+        "reason": "the step became too small",
+        "residual": np.float64("nan"),
+        "balance": {"work": float("inf")},
+        "sizes": np.arange(2),
+    }
     summary = json.loads(write_summary(path, tmp_path).read_text(), parse_constant=reject)
-    assert (summary["converged"], summary["reason"]) == (False, "the step became too small")
+    assert summary["reason"] == "the step became too small"
     assert (summary["residual"], summary["balance"], summary["sizes"]) == (None, {"work": None}, [0, 1])
     interrupted = json.loads(write_summary(path, tmp_path, reason="interrupted").read_text())
     assert interrupted["reason"] == "interrupted"

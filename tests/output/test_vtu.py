@@ -8,7 +8,7 @@ import pyvista
 
 from magshell.errors import InputError
 from magshell.output.registry import OUTPUTS, find
-from magshell.output.vtu import VtuWriter, save
+from magshell.output.vtu import VtuWriter, save_path
 
 QUADRATIC_QUAD = int(pyvista.CellType.QUADRATIC_QUAD)
 
@@ -99,8 +99,8 @@ def test_new_run_replaces_an_old_longer_one(path, written):
 
 
 def test_save_of_a_whole_path_keeps_series_apart(path, tmp_path):
-    save(path, tmp_path / "a & b.pvd")
-    save(path, tmp_path / "other.pvd")
+    save_path(path, tmp_path / "a & b.pvd")
+    save_path(path, tmp_path / "other.pvd")
     for name in ("a & b", "other"):
         reader = pyvista.get_reader(str(tmp_path / f"{name}.pvd"))
         reader.set_active_time_value(1.0)

@@ -40,16 +40,7 @@ def write_summary(path: Path, directory: str | os.PathLike[str], reason: str | N
         The disk refuses; the message names the file.
     """
     file = pathlib.Path(directory) / "summary.json"
-    last = path.steps[-1].state
-    content = dict(path.summary) | {
-        "converged": path.converged,
-        "reason": path.reason if reason is None else reason,
-        "steps": len(path.steps) - 1,
-        "iterations": sum(step.iterations for step in path.steps),
-        "elements": len(path.discretisation.mesh.elements),
-        "dofs": path.discretisation.dofs,
-        "probes": {name: last.u[node] for name, node in path.model.probe_nodes.items()},
-    }
+    content = path.summary if reason is None else {**path.summary, "reason": reason}
     text = json.dumps(_plain(content), indent=2, ensure_ascii=False, allow_nan=False)
     write_atomically(file, text.encode() + b"\n")
     return file

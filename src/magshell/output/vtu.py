@@ -68,7 +68,7 @@ class VtuWriter(Observer):
         write_atomically(self.file, _pvd(self._written))
 
 
-def save(path: Path, file: str | os.PathLike[str]) -> None:
+def save_path(path: Path, file: str | os.PathLike[str]) -> None:
     """Write a whole path: `NAME.pvd` with its step files in the folder `NAME` beside it.
 
     Parameters
