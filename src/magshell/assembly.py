@@ -107,7 +107,8 @@ class Discretisation:
             np.zeros((len(mesh.points), loops.COMPONENTS)),
             np.zeros((elements, 3 * self.modes, values)),
             np.zeros((elements, 3 * self.modes)),
-            np.zeros((len(KINDS), 3)),
+            np.zeros((len(_COLUMNS), 2)),
+            np.zeros(1),
         )
 
     def _number_equations(self, ordering: Ordering) -> None:
@@ -150,6 +151,11 @@ class Discretisation:
         )
         self.dofs = self.pattern.dofs
         self._free_index = number[free]
+
+    @property
+    def normals(self) -> FloatArray:
+        """Unit normals (nodes, 3) of the undeformed mid-surface."""
+        return self.model.normals
 
     # -- what the solver sees ------------------------------------------------------------------------------------
 
@@ -221,12 +227,14 @@ class Discretisation:
         return Assembly(matrix, right_side, out.residual.copy(), self._relative_residual())
 
     def _relative_residual(self) -> dict[str, float]:
-        squares, residual = self._out.scale, np.where(self.free, self._out.residual, 0.0)
-        norms = [float(np.linalg.norm(residual[:, columns])) for columns in _COLUMNS] + [float(np.sqrt(squares[4, 2]))]
-        scales = np.sqrt(squares[:, 0] + squares[:, 1])
+        """Norms by kind; α has the unit of w (both work on directors) and is measured against the same forces."""
+        residual = np.where(self.free, self._out.residual, 0.0)
+        norms = [float(np.linalg.norm(residual[:, columns])) for columns in _COLUMNS]
+        norms.append(float(np.sqrt(self._out.enhancement_residual[0])))
+        scales = np.sqrt(self._out.scale.sum(axis=1)).tolist()
+        scales.append(scales[1])
         return {
-            kind: norm / scale if scale > 0.0 else 0.0
-            for kind, norm, scale in zip(KINDS, norms, scales.tolist(), strict=True)
+            kind: norm / scale if scale > 0.0 else norm for kind, norm, scale in zip(KINDS, norms, scales, strict=True)
         }
 
     def expand(self, solution: FloatArray, imposed: FloatArray | None = None) -> FloatArray:

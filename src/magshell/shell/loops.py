@@ -29,7 +29,6 @@ from magshell.shell.state import State
 from magshell.typing import FloatArray, IntArray
 
 COMPONENTS = 10
-KINDS = ("u", "w", "phi", "omega", "alpha")
 
 
 class Body(NamedTuple):
@@ -102,8 +101,10 @@ class Assembled(NamedTuple):
     gain : ndarray, shape (elements, 3 modes, values)
     offset : ndarray, shape (elements, 3 modes)
         Δα = -offset - gain Δv.
-    scale : ndarray, shape (5, 3)
-        By kind: sums of squares of the elements' internal forces, of their magnetic forces, and (α) of residuals.
+    scale : ndarray, shape (4, 2)
+        Of u, w, φ, ω: sums of squares of the elements' internal forces and of their magnetic forces.
+    enhancement_residual : ndarray, shape (1,)
+        Sum of squares of the residuals of α.
     """
 
     data: FloatArray
@@ -112,6 +113,7 @@ class Assembled(NamedTuple):
     gain: FloatArray
     offset: FloatArray
     scale: FloatArray
+    enhancement_residual: FloatArray
 
 
 @inline
@@ -195,6 +197,7 @@ def assemble(
         out.condensed[:, :] = 0.0
     out.residual[:, :] = 0.0
     out.scale[:, :] = 0.0
+    out.enhancement_residual[0] = 0.0
     for e in range(len(body.elements)):
         nodes = body.elements[e]
         gather(nodes, state.u, state.w, state.phi, state.q, state.alpha[e], rest, v)
@@ -226,8 +229,7 @@ def assemble(
         for l in range(size):
             r_sum[l] = r[l, 0] + r[l, 1]
         for l in range(nodal, size):
-            out.scale[4, 0] += r[l, 0] ** 2
-            out.scale[4, 2] += r_sum[l] ** 2
+            out.enhancement_residual[0] += r_sum[l] ** 2
         if tangent:
             for n in range(rest):
                 for i in range(3):

@@ -1,0 +1,56 @@
+"""What a solve tells those who watch it: files, progress and pictures hang here, not inside Newton."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from magshell.assembly import Discretisation
+    from magshell.solve.path import Path, Step
+    from magshell.solve.settings import Settings
+
+
+@dataclass(frozen=True)
+class Iteration:
+    """One evaluation of the residual.
+
+    Attributes
+    ----------
+    step : int
+    load_factor : float
+    iteration : int
+        Linear solves so far in this step.
+    residual : float
+        The worst kind's, relative.
+    kind : str
+        That kind: u, w, phi, omega or alpha.
+    seconds : float
+        Since the start of the solve.
+    """
+
+    step: int
+    load_factor: float
+    iteration: int
+    residual: float
+    kind: str
+    seconds: float
+
+
+class Observer:
+    """Base class; every method may be left as it is."""
+
+    def started(self, discretisation: Discretisation, settings: Settings) -> None:
+        """Before the first step."""
+
+    def iterated(self, iteration: Iteration) -> None:
+        """After each residual."""
+
+    def converged(self, step: Step) -> None:
+        """After each converged step, the undeformed one included."""
+
+    def cut(self, load_factor: float, reason: str) -> None:
+        """A step to this load factor failed and will be tried with a smaller increment."""
+
+    def finished(self, path: Path) -> None:
+        """At the end, also before an error is raised."""

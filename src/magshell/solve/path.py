@@ -1,0 +1,156 @@
+"""The result of a solve: converged steps along the load path."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from os import PathLike
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from magshell.assembly import Discretisation
+from magshell.errors import InputError, suggest
+from magshell.model import Model
+from magshell.shell.state import State
+from magshell.solve.balance import Balance
+from magshell.solve.settings import Settings
+from magshell.typing import FloatArray
+
+
+class Step(NamedTuple):
+    """A converged step.
+
+    Attributes
+    ----------
+    number : int
+        0 is the undeformed state.
+    load_factor : float
+    state : State
+    iterations, solves : int
+        Newton iterations, each one linear solve.
+    residual : float
+        Relative, of the worst kind of unknown.
+    balance : Balance or None
+        Global equilibrium; None for the undeformed state.
+    """
+
+    number: int
+    load_factor: float
+    state: State
+    iterations: int
+    solves: int
+    residual: float
+    balance: Balance | None
+
+
+class Probe(NamedTuple):
+    """A node along the path: load_factor (n,), flux_density (n, 3) in T, displacement u (n, 3) in m."""
+
+    load_factor: FloatArray
+    flux_density: FloatArray
+    u: FloatArray
+
+    @property
+    def u1(self) -> FloatArray:
+        """Component along X1, m."""
+        return self.u[:, 0]
+
+    @property
+    def u2(self) -> FloatArray:
+        """Component along X2, m."""
+        return self.u[:, 1]
+
+    @property
+    def u3(self) -> FloatArray:
+        """Component along X3, m."""
+        return self.u[:, 2]
+
+
+@dataclass
+class Path:
+    """Converged steps, and how they were obtained.
+
+    Attributes
+    ----------
+    model : Model
+    discretisation : Discretisation
+    settings : Settings
+    solver_name : str
+        Linear solver in use.
+    steps : list of Step
+        The undeformed state first.
+    converged : bool
+        Whether load factor 1 was reached.
+    reason : str
+        Why the path ends where it does.
+    iterations, solves, cuts : int
+        Residual evaluations and cuts in all; linear solves of the converged steps.
+    cpu_seconds : float
+    """
+
+    model: Model
+    discretisation: Discretisation
+    settings: Settings
+    solver_name: str
+    steps: list[Step] = field(default_factory=list)
+    converged: bool = False
+    reason: str = "not finished"
+    iterations: int = 0
+    solves: int = 0
+    cuts: int = 0
+    cpu_seconds: float = 0.0
+
+    def probe(self, name: str) -> Probe:
+        """Displacement of a probe, or of a node group of one node, along the path.
+
+        Raises
+        ------
+        InputError
+            No such probe.
+        """
+        node = self._node(name)
+        factors = np.array([step.load_factor for step in self.steps])
+        flux_density = factors[:, None] * self.model.field.vector
+        return Probe(factors, flux_density, np.array([step.state.u[node] for step in self.steps]))
+
+    def _node(self, name: str) -> int:
+        if name in self.model.probe_nodes:
+            return self.model.probe_nodes[name]
+        group = self.model.shell.mesh.node_groups.get(name)
+        if group is None or len(group) != 1:
+            raise InputError(f"probe '{name}' is unknown. {suggest(name, self.model.probe_nodes)}")
+        return int(group[0])
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """What summary.json holds."""
+        last = self.steps[-1] if self.steps else None
+        balances = [step.balance for step in self.steps if step.balance is not None]
+        return {
+            "converged": self.converged,
+            "reason": self.reason,
+            "steps": max(len(self.steps) - 1, 0),
+            "iterations": self.iterations,
+            "linear_solves": self.solves,
+            "cuts": self.cuts,
+            "elements": len(self.model.shell.mesh.elements),
+            "dofs": self.discretisation.dofs,
+            "linear_solver": self.solver_name,
+            "cpu_seconds": self.cpu_seconds,
+            "load_factor": last.load_factor if last else 0.0,
+            "force_imbalance": max((b.force_imbalance for b in balances), default=0.0),
+            "moment_imbalance": max((b.moment_imbalance for b in balances), default=0.0),
+            "probes": {name: self.probe(name).u[-1].tolist() for name in self.model.probe_nodes} if last else {},
+        }
+
+    def save(self, file: str | PathLike[str]) -> None:
+        """Write every step as VTU beside a PVD file that ParaView opens."""
+        from magshell.output.vtu import save_path
+
+        save_path(self, file)
+
+    def plot(self, color: str = "u3") -> Any:
+        """Picture of the last deformed shape, coloured by a registered output."""
+        from magshell.output.pictures import draw_shape
+
+        return draw_shape(self, file=None, color=color)

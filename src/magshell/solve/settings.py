@@ -1,0 +1,50 @@
+"""Settings of a solve."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+from magshell.errors import InputError
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How the path is followed; the defaults solve all built-in problems.
+
+    Attributes
+    ----------
+    tolerance : float
+        Largest residual of each kind of unknown (u, w, φ, ω, α) over the elements' forces of that kind.
+    max_iterations : int
+        Linear solves after which a step is cut.
+    target_iterations : int
+        Linear solves per step that the step size aims at.
+    first_step, smallest_step, largest_step : float
+        Increments of the load factor.
+    mixed_tangent : bool
+        Mixed-integration-point Newton (few, large steps); False: the plain one.
+    linear_solver : {"superlu", "pardiso"}
+        The second needs an extra.
+    """
+
+    tolerance: float = 1e-9
+    max_iterations: int = 12
+    target_iterations: int = 5
+    first_step: float = 0.02
+    smallest_step: float = 1e-6
+    largest_step: float = 1.0
+    mixed_tangent: bool = True
+    linear_solver: str = "superlu"
+
+    def __post_init__(self) -> None:
+        for entry in fields(self):
+            value = getattr(self, entry.name)
+            if isinstance(value, int | float) and not isinstance(value, bool) and not 0 < value < float("inf"):
+                raise InputError(f"solver: {entry.name} is {value}; it must be positive and finite")
+        if self.tolerance >= 1e-2:
+            raise InputError(f"solver: tolerance is {self.tolerance:g}; a result needs less than 1e-2")
+        if not self.smallest_step <= self.first_step <= self.largest_step <= 1.0:
+            raise InputError(
+                f"solver: steps must satisfy smallest_step ({self.smallest_step:g}) <= first_step "
+                f"({self.first_step:g}) <= largest_step ({self.largest_step:g}) <= 1"
+            )
