@@ -1,1 +1,74 @@
-"""Placeholder."""
+"""magshell: how thin structures of hard-magnetic soft material deform in a magnetic field.
+
+Names are imported when first used, so that `import magshell` is quick.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from magshell import mesh
+    from magshell.errors import InputError, MeshError, SolveError
+    from magshell.magnetics import (
+        DeformationGradientEnergy,
+        MicropolarCouple,
+        MicroRotationEnergy,
+        UniformField,
+        remanence,
+    )
+    from magshell.materials import MicropolarMooneyRivlin, MicropolarNeoHookean
+    from magshell.model import Model, Shell
+    from magshell.solve import Observer, Path, Settings, Step, solve
+    from magshell.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane
+
+__version__ = "0.1.0"
+
+_HOME = {
+    "magshell.errors": ("InputError", "MeshError", "SolveError"),
+    "magshell.magnetics": ("DeformationGradientEnergy", "MicroRotationEnergy", "MicropolarCouple", "UniformField"),
+    "magshell.materials": ("MicropolarMooneyRivlin", "MicropolarNeoHookean"),
+    "magshell.model": ("Model", "Shell"),
+    "magshell.solve": ("Observer", "Path", "Settings", "Step", "solve"),
+    "magshell.supports": ("Clamp", "Prescribe", "SimpleSupport", "SymmetryPlane"),
+}
+_MODULES = {"mesh": "magshell.mesh", "remanence": "magshell.magnetics.remanence"}
+_NAMES = {name: home for home, names in _HOME.items() for name in names}
+
+__all__ = [
+    "Clamp",
+    "DeformationGradientEnergy",
+    "InputError",
+    "MeshError",
+    "MicroRotationEnergy",
+    "MicropolarCouple",
+    "MicropolarMooneyRivlin",
+    "MicropolarNeoHookean",
+    "Model",
+    "Observer",
+    "Path",
+    "Prescribe",
+    "Settings",
+    "Shell",
+    "SimpleSupport",
+    "SolveError",
+    "Step",
+    "SymmetryPlane",
+    "UniformField",
+    "mesh",
+    "remanence",
+    "solve",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _MODULES:
+        return import_module(_MODULES[name])
+    if name in _NAMES:
+        return getattr(import_module(_NAMES[name]), name)
+    raise AttributeError(f"module 'magshell' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return __all__
