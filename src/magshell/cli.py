@@ -156,13 +156,11 @@ def _run(given: argparse.Namespace) -> int:
         path = error.path
         _complain(f"{problem.source}: not solved: {error.reason}")
     except KeyboardInterrupt:
-        if progress.discretisation is None:
+        if progress.path is None or not progress.path.steps:
             raise
-        path = progress.path_so_far("interrupted")
-        write_summary(path, directory)
-        _complain(
-            f"{problem.source}: interrupted; the {len(path.steps) - 1} converged steps are in {directory}"
-        )
+        write_summary(progress.path, directory, reason="interrupted")
+        kept = len(progress.path.steps) - 1
+        _complain(f"{problem.source}: interrupted; the {kept} steps that converged are in {directory}")
         return INTERRUPTED
     write_summary(path, directory)
     for name in problem.file.probes:

@@ -6,10 +6,12 @@ import time
 from types import TracebackType
 from typing import TYPE_CHECKING
 
-import numpy as np
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
+from magshell.compiled import is_compiled
+from magshell.linalg import make_solver
+from magshell.shell.loops import assemble
 from magshell.solve.events import Observer
 from magshell.units import FLUX_DENSITY, show
 
@@ -30,15 +32,12 @@ class ProgressDisplay(Observer):
 
     Attributes
     ----------
-    discretisation : Discretisation or None
-        None before the solve has started.
-    steps : list of Step
-        Every step that converged so far.
+    path : Path or None
+        None until the solve has ended, in whatever way.
     """
 
     def __init__(self, console: Console) -> None:
-        self.discretisation: Discretisation | None = None
-        self.steps: list[Step] = []
+        self.path: Path | None = None
         self._console = console
         self._live = console.is_terminal
         self._bar = Progress(
@@ -63,13 +62,13 @@ class ProgressDisplay(Observer):
         self._bar.stop()
 
     def started(self, discretisation: Discretisation, settings: Settings) -> None:
-        """Name the size and the linear solver."""
-        self.discretisation = discretisation
-        self._magnitude = float(np.linalg.norm(np.asarray(discretisation.model.field.flux_density)))
-        elements = len(discretisation.mesh.elements)
-        self._line(
-            f"{elements} elements, {discretisation.dofs} unknowns, linear solver {discretisation.solver_name}"
-        )
+        """Name the size and the linear solver; say so if the kernels must be compiled first."""
+        self._magnitude = discretisation.model.field.magnitude
+        elements, unknowns = len(discretisation.mesh.elements), discretisation.dofs
+        solver = make_solver(settings.linear_solver).name
+        self._line(f"{elements} elements, {unknowns} unknowns, linear solver: {solver}")
+        if not is_compiled(assemble):
+            self._line("compiling the kernels for the first use of this version (up to a minute) ...")
 
     def iterated(self, iteration: Iteration) -> None:
         """Show how far the step is."""
@@ -84,7 +83,6 @@ class ProgressDisplay(Observer):
 
     def converged(self, step: Step) -> None:
         """Move the bar, or write a line."""
-        self.steps.append(step)
         if self._live:
             self._bar.update(self._task, completed=step.load_factor)
         elif step.number:
@@ -102,12 +100,13 @@ class ProgressDisplay(Observer):
 
     def finished(self, path: Path) -> None:
         """Say how it ended."""
-        iterations = sum(step.iterations for step in path.steps)
-        took = time.monotonic() - self._began
-        self._line(
-            f"{'solved' if path.converged else 'stopped'} at {self._load(path.steps[-1].load_factor)}: "
-            f"{len(path.steps) - 1} steps, {iterations} iterations, {took:.1f} s"
-        )
+        self.path = path
+        if path.steps:
+            self._line(
+                f"{'solved' if path.converged else 'stopped'} at {self._load(path.steps[-1].load_factor)}: "
+                f"{len(path.steps) - 1} steps, {path.solves} linear solves, "
+                f"{time.monotonic() - self._began:.1f} s"
+            )
 
     def _load(self, load_factor: float) -> str:
         percent = f"{100.0 * load_factor:.4g} %"

@@ -184,6 +184,11 @@ BROKEN = [
     Broken("angle that goes back", '["0 deg", "90 deg"]', '["90 deg", "0 deg"]', "mesh", ("angle",), PUMP),
     Broken("angle in mm", '"90 deg"', '"90 mm"', "mesh.angle[1]", ("length", "angle"), PUMP),
     Broken("axis of zero length", "angle =", "axis = [0, 0, 0]\nangle =", "mesh.axis", ("zero vector",), PUMP),
+    # solver
+    Broken("unknown linear solver", "[probes]", '[solver]\nlinear_solver = "superlou"\n[probes]', "solver", ("'superlou'", "'superlu'")),
+    Broken("negative tolerance", "[probes]", "[solver]\ntolerance = -1e-9\n[probes]", "solver.tolerance", ("not positive",)),
+    Broken("coarse tolerance", "[probes]", "[solver]\ntolerance = 0.5\n[probes]", "solver", ("tolerance", "1e-2")),
+    Broken("steps out of order", "[probes]", "[solver]\nfirst_step = 0.1\nlargest_step = 0.01\n[probes]", "solver", ("first_step", "largest_step")),
     # TOML
     Broken("key twice", 'width = "5 mm"', 'width = "5 mm"\nwidth = "6 mm"', "", ("not valid TOML", "twice", "line 6")),
     Broken("table twice", "[field]", "[shell]\n[field]", "", ("not valid TOML", "twice", "line")),

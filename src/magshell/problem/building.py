@@ -10,6 +10,7 @@ import numpy as np
 
 from magshell import magnetics, materials
 from magshell.errors import InputError
+from magshell.linalg import make_solver
 from magshell.magnetics import UniformField, remanence
 from magshell.magnetics.remanence import Remanence
 from magshell.materials import Material
@@ -85,7 +86,9 @@ def build(file: ProblemFile, source: str) -> Problem:
             coupling=COUPLINGS[file.field.coupling],
             probes=file.probes,
         )
-        return Problem(source, file, model, _settings(file))
+        settings = Settings(**file.solver.model_dump(exclude_none=True))
+        make_solver(settings.linear_solver)
+        return Problem(source, file, model, settings)
 
 
 @contextmanager
@@ -216,7 +219,3 @@ def _probes_exist(probes: Mapping[str, tuple[float, float, float]], mesh: Mesh) 
 
 def _listed(mesh: Mesh) -> str:
     return f"({', '.join(mesh.element_groups)})" if mesh.element_groups else "(this mesh has none)"
-
-
-def _settings(file: ProblemFile) -> Settings:
-    return Settings()

@@ -258,6 +258,18 @@ class PrescribeTable(_Support):
         return self
 
 
+class SolverTable(Table):
+    """How the path is followed; what is left out has the default of `magshell.solve.Settings`."""
+
+    tolerance: f.PositiveNumber | None = None
+    max_iterations: f.Count | None = None
+    target_iterations: f.Count | None = None
+    first_step: f.PositiveNumber | None = None
+    smallest_step: f.PositiveNumber | None = None
+    largest_step: f.PositiveNumber | None = None
+    linear_solver: f.Name | None = None
+
+
 Mesh: TypeAlias = Rectangle | Blocks | Cylinder | SpherePatch
 Material: TypeAlias = NeoHookean | MooneyRivlin
 Remanence: TypeAlias = ConstantRemanence | MeridionalRemanence | CircumferentialRemanence
@@ -286,3 +298,4 @@ class ProblemFile(Table):
         tuple[Annotated[Support, Field(discriminator="kind")], ...], BeforeValidator(f.not_empty)
     ]
     probes: dict[f.ProbeName, f.Position] = {}
+    solver: SolverTable = SolverTable()
