@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     )
     from magshell.materials import MicropolarMooneyRivlin, MicropolarNeoHookean
     from magshell.model import Model, Shell
-    from magshell.solve import Observer, Path, Settings, Step, solve
+    from magshell.solver import Observer, Path, Settings, Step, solve
     from magshell.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane
 
 __version__ = "0.1.0"
@@ -30,7 +30,7 @@ _HOME = {
     "magshell.magnetics": ("DeformationGradientEnergy", "MicroRotationEnergy", "MicropolarCouple", "UniformField"),
     "magshell.materials": ("MicropolarMooneyRivlin", "MicropolarNeoHookean"),
     "magshell.model": ("Model", "Shell"),
-    "magshell.solve": ("Observer", "Path", "Settings", "Step", "solve"),
+    "magshell.solver": ("Observer", "Path", "Settings", "Step", "solve"),
     "magshell.supports": ("Clamp", "Prescribe", "SimpleSupport", "SymmetryPlane"),
 }
 _MODULES = {"mesh": "magshell.mesh", "remanence": "magshell.magnetics.remanence"}

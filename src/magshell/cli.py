@@ -140,7 +140,7 @@ def _run(given: argparse.Namespace) -> int:
     from magshell.problem import load
     from magshell.problem.report import describe
     from magshell.progress import ProgressDisplay
-    from magshell.solve import solve
+    from magshell.solver import solve
 
     problem = load(given.problem)
     console = _console()

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from magshell.solve.path import Path
+    from magshell.solver.path import Path
 
 
 class InputError(ValueError):

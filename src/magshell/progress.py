@@ -12,14 +12,14 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 from magshell.compiled import is_compiled
 from magshell.linalg import make_solver
 from magshell.shell.loops import assemble
-from magshell.solve.events import Observer
+from magshell.solver.events import Observer
 from magshell.units import FLUX_DENSITY, show
 
 if TYPE_CHECKING:
     from magshell.assembly import Discretisation
-    from magshell.solve.events import Iteration
-    from magshell.solve.path import Path, Step
-    from magshell.solve.settings import Settings
+    from magshell.solver.events import Iteration
+    from magshell.solver.path import Path, Step
+    from magshell.solver.settings import Settings
 
 
 class ProgressDisplay(Observer):

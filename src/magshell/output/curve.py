@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from PIL.Image import Image
 
-    from magshell.solve.path import Path
+    from magshell.solver.path import Path
 
 NEGLIGIBLE = 0.01
 LINES = (("--", "s"), (":", "^"), ("-", "o"))

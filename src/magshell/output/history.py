@@ -10,12 +10,12 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from magshell.output.files import append_line, write_atomically
-from magshell.solve.events import Observer
+from magshell.solver.events import Observer
 
 if TYPE_CHECKING:
     from magshell.assembly import Discretisation
-    from magshell.solve.path import Step
-    from magshell.solve.settings import Settings
+    from magshell.solver.path import Step
+    from magshell.solver.settings import Settings
 
 
 class HistoryWriter(Observer):

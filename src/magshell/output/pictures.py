@@ -11,7 +11,7 @@ from magshell.output.rendering import RenderingUnavailable
 from magshell.output.shape import draw_shape
 
 if TYPE_CHECKING:
-    from magshell.solve.path import Path
+    from magshell.solver.path import Path
 
 __all__ = ["RenderingUnavailable", "draw_curve", "draw_pictures", "draw_shape"]
 

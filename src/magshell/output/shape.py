@@ -17,7 +17,7 @@ from magshell.typing import AnyArray, FloatArray
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-    from magshell.solve.path import Path, Step
+    from magshell.solver.path import Path, Step
 
 INCHES = (10.0, 7.0)
 SCENE = (0.0, 0.0, 0.865, 0.9)

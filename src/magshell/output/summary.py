@@ -14,7 +14,7 @@ import numpy as np
 from magshell.output.files import write_atomically
 
 if TYPE_CHECKING:
-    from magshell.solve.path import Path
+    from magshell.solver.path import Path
 
 
 def write_summary(path: Path, directory: str | os.PathLike[str], reason: str | None = None) -> pathlib.Path:

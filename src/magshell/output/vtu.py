@@ -12,12 +12,12 @@ import numpy as np
 
 from magshell.output.files import naming, write_atomically
 from magshell.output.registry import OUTPUTS
-from magshell.solve.events import Observer
+from magshell.solver.events import Observer
 
 if TYPE_CHECKING:
     from magshell.assembly import Discretisation
-    from magshell.solve.path import Path, Step
-    from magshell.solve.settings import Settings
+    from magshell.solver.path import Path, Step
+    from magshell.solver.settings import Settings
 
 VTK_QUADRATIC_QUAD = 23
 

@@ -18,7 +18,7 @@ from magshell.mesh import Mesh, blocks, cylinder, rectangle, sphere_patch
 from magshell.model import Model, Shell
 from magshell.problem import schema
 from magshell.problem.schema import ProblemFile
-from magshell.solve.settings import Settings
+from magshell.solver.settings import Settings
 from magshell.supports import Clamp, Prescribe, SimpleSupport, Support, SymmetryPlane
 
 MOST_ELEMENTS = 1_000_000

@@ -13,11 +13,11 @@ from magshell.errors import SolveError
 from magshell.linalg import make_solver, nested_dissection
 from magshell.model import Model
 from magshell.shell.state import State
-from magshell.solve.balance import balance
-from magshell.solve.events import Iteration, Observer
-from magshell.solve.newton import StepFailure, Trial, newton
-from magshell.solve.path import Path, Step
-from magshell.solve.settings import Settings
+from magshell.solver.balance import balance
+from magshell.solver.events import Iteration, Observer
+from magshell.solver.newton import StepFailure, Trial, newton
+from magshell.solver.path import Path, Step
+from magshell.solver.settings import Settings
 from magshell.typing import FloatArray
 
 logger = logging.getLogger(__name__)

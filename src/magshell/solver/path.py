@@ -12,8 +12,8 @@ from magshell.assembly import Discretisation
 from magshell.errors import InputError, suggest
 from magshell.model import Model
 from magshell.shell.state import State
-from magshell.solve.balance import Balance
-from magshell.solve.settings import Settings
+from magshell.solver.balance import Balance
+from magshell.solver.settings import Settings
 from magshell.typing import FloatArray
 
 

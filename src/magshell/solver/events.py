@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from magshell.assembly import Discretisation
-    from magshell.solve.path import Path, Step
-    from magshell.solve.settings import Settings
+    from magshell.solver.path import Path, Step
+    from magshell.solver.settings import Settings
 
 
 @dataclass(frozen=True)

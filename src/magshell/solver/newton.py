@@ -17,7 +17,7 @@ from magshell.assembly import Assembly, Discretisation, InvertedElement
 from magshell.linalg import LinearSolver, SingularMatrix
 from magshell.shell.loops import Stresses
 from magshell.shell.state import State
-from magshell.solve.settings import Settings
+from magshell.solver.settings import Settings
 from magshell.typing import FloatArray
 
 HALVINGS = 4

@@ -1,0 +1,8 @@
+"""Solution: Newton's method, load stepping, the resulting path."""
+
+from magshell.solver.events import Iteration, Observer
+from magshell.solver.path import Path, Probe, Step
+from magshell.solver.settings import Settings
+from magshell.solver.stepping import solve
+
+__all__ = ["Iteration", "Observer", "Path", "Probe", "Settings", "Step", "solve"]
