@@ -259,7 +259,7 @@ class PrescribeTable(_Support):
 
 
 class SolverTable(Table):
-    """How the path is followed; what is left out has the default of `magshell.solver.Settings`."""
+    """How the path is followed; what is left out has the default of `magshell.Settings`."""
 
     tolerance: f.PositiveNumber | None = None
     max_iterations: f.Count | None = None
