@@ -1,0 +1,191 @@
+"""`magshell run`: what it writes and says when a problem is solved, is not solved, or is interrupted."""
+
+from __future__ import annotations
+
+import csv
+import errno
+import io
+import json
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from magshell import problem
+from magshell.cli import main
+from magshell.output.history import HistoryWriter
+from magshell.progress import ProgressDisplay
+from magshell.solver import Step, solve
+
+STRIP = """
+[mesh]
+generator = "rectangle"
+length = "20 mm"
+width = "5 mm"
+elements = [4, 1]
+
+[shell]
+thickness = "1 mm"
+
+[material]
+law = "micropolar-neo-hookean"
+shear_modulus = "303 kPa"
+lame_lambda = "7300 kPa"
+
+[[remanence]]
+kind = "constant"
+vector = ["143 mT", 0, 0]
+
+[field]
+flux_density = [0, 0, "5 mT"]
+stops = ["1 mT", "3 mT"]
+
+[[supports]]
+kind = "clamp"
+group = "left"
+
+[probes]
+tip = ["20 mm", "2.5 mm", 0]
+"""
+
+
+@pytest.fixture
+def strip(tmp_path: Path) -> str:
+    file = tmp_path / "strip.toml"
+    file.write_text(STRIP)
+    return str(file)
+
+
+def rows(out: Path) -> list[dict[str, float]]:
+    with (out / "history.csv").open(newline="") as file:
+        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+
+
+def series(out: Path) -> list[str]:
+    """Step files that the PVD file names."""
+    return re.findall(r'file="([^"]+)"', (out / "shell.pvd").read_text())
+
+
+def test_solved(strip: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "new" / "results"
+    assert main(["run", strip, "--out", str(out)]) == 0
+    shown = capsys.readouterr()
+    assert shown.err == ""
+    history, summary = rows(out), json.loads((out / "summary.json").read_text())
+    path = solve(problem.load(strip).model)
+    assert [row["load_factor"] for row in history] == [step.load_factor for step in path.steps]
+    np.testing.assert_array_equal([row["tip.u3"] for row in history], path.probe("tip").u3)
+    for stop in (1e-3, 3e-3, 5e-3):
+        assert min(abs(row["B3"] - stop) for row in history) < 1e-15, f"{stop} T is not hit"
+    assert summary["converged"] is True
+    assert summary["steps"] == len(history) - 1
+    assert summary["probes"]["tip"][2] == history[-1]["tip.u3"]
+    assert len(series(out)) == len(history)
+    assert all((out / name).is_file() for name in series(out))
+    assert (out / "curve.png").read_bytes()[:4] == b"\x89PNG"
+    for words in (
+        "linear solver",
+        "step 1 ",
+        "solved at 100 % (5 mT)",
+        "tip: u = (",
+        "picture: ",
+        f"results: {out}",
+    ):
+        assert words in shown.out, f"{words!r} is not in {shown.out}"
+
+
+def test_a_second_run_replaces_the_first(strip: str, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert main(["run", strip, "--out", str(out)]) == 0
+    first = len(rows(out))
+    Path(strip).write_text(STRIP.replace('"5 mT"', '"4 mT"').replace('["1 mT", "3 mT"]', "[]"))
+    assert main(["run", strip, "--out", str(out)]) == 0
+    history = rows(out)
+    assert history[-1]["B3"] == 4e-3
+    assert len(history) < first
+    assert sorted(file.name for file in (out / "steps").iterdir()) == [
+        Path(name).name for name in series(out)
+    ]
+
+
+def test_not_solved(strip: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    Path(strip).write_text(STRIP + "[solver]\nmax_iterations = 1\nfirst_step = 0.1\nsmallest_step = 0.05\n")
+    out = tmp_path / "out"
+    assert main(["run", strip, "--out", str(out)]) == 1
+    shown = capsys.readouterr()
+    summary = json.loads((out / "summary.json").read_text())
+    assert shown.err.startswith("error: strip.toml: not solved: ")
+    assert len(shown.err.splitlines()) == 1
+    assert summary["converged"] is False
+    assert summary["reason"] in shown.err
+    assert "no convergence in 1 iterations" in summary["reason"]
+    assert rows(out)[0]["load_factor"] == 0.0
+    assert f"results: {out}" in shown.out
+
+
+def test_interrupted_keeps_every_converged_step(
+    strip: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupting(self: ProgressDisplay, step: Step) -> None:
+        if step.number == 3:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(ProgressDisplay, "converged", interrupting)
+    out = tmp_path / "out"
+    assert main(["run", strip, "--out", str(out)]) == 130
+    shown = capsys.readouterr().err
+    assert f"interrupted; the 3 steps that converged are in {out}" in shown
+    summary = json.loads((out / "summary.json").read_text())
+    assert (summary["converged"], summary["reason"], summary["steps"]) == (False, "interrupted", 3)
+    assert len(rows(out)) == len(series(out)) == 4
+    assert summary["probes"]["tip"][2] == rows(out)[-1]["tip.u3"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to another process")
+def test_interrupt_key(tmp_path: Path) -> None:
+    """Ctrl-C in the middle of a long run, with the process's own signal handling."""
+    out = tmp_path / "out"
+    command = [sys.executable, "-m", "magshell", "run", "hollow-cross", "--out", str(out)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        end = time.monotonic() + 300
+        while not ((out / "history.csv").exists() and len(rows(out)) > 2):
+            assert process.poll() is None, process.stderr and process.stderr.read()
+            assert time.monotonic() < end, "no step in 300 s"
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        _, stderr = process.communicate(timeout=60)
+    assert process.returncode == 130, stderr
+    assert "Traceback" not in stderr
+    summary = json.loads((out / "summary.json").read_text())
+    assert (summary["converged"], summary["reason"]) == (False, "interrupted")
+    assert summary["steps"] == len(rows(out)) - 1 >= 2
+
+
+def test_disk_that_refuses(
+    strip: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def full(self: HistoryWriter, step: Step) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device", str(self.file))
+
+    monkeypatch.setattr(HistoryWriter, "converged", full)
+    assert main(["run", strip, "--out", str(tmp_path / "out")]) == 1
+    assert capsys.readouterr().err == f"error: {tmp_path}/out/history.csv: No space left on device\n"
+
+
+def test_progress_on_a_terminal(strip: str) -> None:
+    text = io.StringIO()
+    display = ProgressDisplay(Console(file=text, force_terminal=True, width=160))
+    with display:
+        path = solve(problem.load(strip).model, observers=[display])
+        display.cut(0.5, "too bold")
+    assert display.path is path
+    shown = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", text.getvalue())
+    for words in ("linear solver", "100%", "cut: too bold", "solved at 100 % (5 mT)"):
+        assert words in shown, f"{words!r} is not in {shown!r}"
+    assert not re.search(r"step 1  \d", shown), "no line per step on a terminal"
