@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
 
+from magshell.materials.law import strain_energy
 from magshell.model import Model
-from magshell.shell import loops
+from magshell.shell import loops, rotation
+from magshell.shell.evaluation import evaluate
 from magshell.shell.geometry import section_geometry
 from magshell.shell.interpolation import surface_rule
 from magshell.shell.shape_functions import serendipity
@@ -275,6 +278,67 @@ class Discretisation:
         d_alpha = np.empty((len(self.mesh.elements), self.modes, 3))
         loops.recover_enhancement(self.body.elements, self.rest, increment, self._out.gain, self._out.offset, d_alpha)
         return d_alpha
+
+
+    # -- what pictures and files see -----------------------------------------------------------------------------
+
+    def nodal_director(self, state: State) -> FloatArray:
+        """Director d = D + w (nodes, 3); mid-sides take the mean of their corners' w."""
+        return self.normals + self._filled(state.w)
+
+    def nodal_phi(self, state: State) -> FloatArray:
+        """Thickness stretch φ (nodes,), 1/m."""
+        return self._filled(state.phi)
+
+    def nodal_rotation(self, state: State) -> FloatArray:
+        """Micro-rotation vector (nodes, 3), rad, of magnitude at most π."""
+        ends = self._mid_side_ends
+        q = state.q.copy()
+        first, second = q[ends[:, 0]], q[ends[:, 1]]
+        sign = np.where(np.sum(first * second, axis=1, keepdims=True) < 0.0, -1.0, 1.0)
+        mean = first + sign * second
+        q[self._mid_sides] = mean / np.linalg.norm(mean, axis=1, keepdims=True)
+        return rotation.logarithm(q)
+
+    def element_remanence(self, state: State) -> FloatArray:
+        """Remanence in the current configuration, J⁻¹ F B̃ (elements, 3), T, mean over the volume."""
+        F = evaluate(self.body, state).F
+        values = np.einsum("epkxy,epy->epkx", F, self.body.remanence) / np.linalg.det(F)[..., None]
+        return np.asarray(self._volume_mean(values))
+
+    def element_thickness_ratio(self, state: State) -> FloatArray:
+        """Deformed over undeformed thickness (elements,), mean of |F D|."""
+        F = evaluate(self.body, state).F
+        return np.asarray(self._volume_mean(np.linalg.norm(np.einsum("epkxy,epy->epkx", F, self.body.geometry.D), axis=-1)))
+
+    def element_energy(self, state: State) -> FloatArray:
+        """Strain energy (elements,), J, couple stress included."""
+        fields, geometry, material = evaluate(self.body, state), self.body.geometry, self.model.shell.material
+        U = np.moveaxis(np.einsum("epyx,epkyz->epkxz", fields.R, fields.F), (-2, -1), (0, 1))
+        stretch = (strain_energy(material, U) * geometry.volume).sum(axis=(1, 2))
+        wryness = np.einsum("epab,epax,epbx->e", geometry.metric, fields.kappa, fields.kappa)
+        return np.asarray(stretch + 0.5 * material.couple_modulus * wryness)
+
+    def _volume_mean(self, values: FloatArray) -> FloatArray:
+        volume = self.body.geometry.volume
+        weights = volume / volume.sum(axis=(1, 2), keepdims=True)
+        return np.asarray(np.einsum("epk,epk...->e...", weights, values))
+
+    @cached_property
+    def _mid_sides(self) -> IntArray:
+        return self.mesh.elements[:, 4:].ravel()
+
+    @cached_property
+    def _mid_side_ends(self) -> IntArray:
+        """Corner nodes (mid-sides, 2) on either side of each of `_mid_sides`."""
+        corners = self.mesh.elements[:, :4]
+        return np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2)
+
+    def _filled(self, nodal: FloatArray) -> FloatArray:
+        """A field of the corners, its mid-sides set to the mean of their ends."""
+        values = nodal.copy()
+        values[self._mid_sides] = nodal[self._mid_side_ends].mean(axis=1)
+        return values
 
 
 def _pattern(graph: sp.csr_array, order: IntArray, counts: IntArray) -> tuple[Pattern, sp.csr_array]:

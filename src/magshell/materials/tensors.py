@@ -8,8 +8,8 @@ from magshell.typing import FloatArray
 
 
 def inverse_transpose(U: FloatArray) -> tuple[FloatArray, float]:
-    """U⁻ᵀ and det U of a 3 × 3 array, from its cofactors."""
-    V = np.empty((3, 3), dtype=U.dtype)
+    """U⁻ᵀ and det U of a 3 × 3 array, from its cofactors (further axes broadcast outside kernels)."""
+    V = np.empty_like(U)
     for i in range(3):
         a, b = (i + 1) % 3, (i + 2) % 3
         for j in range(3):

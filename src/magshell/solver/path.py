@@ -26,8 +26,8 @@ class Step(NamedTuple):
         0 is the undeformed state.
     load_factor : float
     state : State
-    iterations, solves : int
-        Newton iterations, each one linear solve.
+    iterations : int
+        Newton iterations, each one factorisation and solve.
     residual : float
         Relative, of the worst kind of unknown.
     balance : Balance or None
@@ -38,7 +38,6 @@ class Step(NamedTuple):
     load_factor: float
     state: State
     iterations: int
-    solves: int
     residual: float
     balance: Balance | None
 
@@ -83,8 +82,8 @@ class Path:
         Whether load factor 1 was reached.
     reason : str
         Why the path ends where it does.
-    iterations, solves, cuts : int
-        Residual evaluations and cuts in all; linear solves of the converged steps.
+    solves, cuts : int
+        Linear solves in all, those of cut steps included; cuts.
     cpu_seconds : float
     """
 
@@ -95,7 +94,6 @@ class Path:
     steps: list[Step] = field(default_factory=list)
     converged: bool = False
     reason: str = "not finished"
-    iterations: int = 0
     solves: int = 0
     cuts: int = 0
     cpu_seconds: float = 0.0
@@ -130,8 +128,7 @@ class Path:
             "converged": self.converged,
             "reason": self.reason,
             "steps": max(len(self.steps) - 1, 0),
-            "iterations": self.iterations,
-            "linear_solves": self.solves,
+            "iterations": self.solves,
             "cuts": self.cuts,
             "elements": len(self.model.shell.mesh.elements),
             "dofs": self.discretisation.dofs,

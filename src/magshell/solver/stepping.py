@@ -10,7 +10,7 @@ import numpy as np
 
 from magshell.assembly import Discretisation, InvertedElement
 from magshell.errors import SolveError
-from magshell.linalg import make_solver, nested_dissection
+from magshell.linalg import LinearSolver, make_solver, nested_dissection
 from magshell.model import Model
 from magshell.shell.state import State
 from magshell.solver.balance import balance
@@ -69,11 +69,11 @@ def solve(model: Model, settings: Settings | None = None, observers: Sequence[Ob
     return path
 
 
-def _follow(path: Path, linear_solver, observers: Sequence[Observer], begin: float) -> None:  # type: ignore[no-untyped-def]
+def _follow(path: Path, linear_solver: LinearSolver, observers: Sequence[Observer], begin: float) -> None:
     """Step until the last stop; raises StepFailure with the reason."""
     settings, discretisation = path.settings, path.discretisation
     stops = path.model.field.stop_factors
-    _keep(path, Step(0, 0.0, discretisation.undeformed(), 0, 0, 0.0, None), observers)
+    _keep(path, Step(0, 0.0, discretisation.undeformed(), 0, 0.0, None), observers)
     size = settings.first_step
     while path.steps[-1].load_factor < 1.0:
         last = path.steps[-1]
@@ -83,7 +83,7 @@ def _follow(path: Path, linear_solver, observers: Sequence[Observer], begin: flo
         load_factor = stop if d_factor == left else last.load_factor + d_factor
 
         def report(iteration: int, kind: str, residual: float, at: float = load_factor) -> None:
-            path.iterations += 1
+            path.solves += iteration > 0
             for observer in observers:
                 seconds = time.perf_counter() - begin
                 observer.iterated(Iteration(len(path.steps), at, iteration, residual, kind, seconds))
@@ -100,14 +100,13 @@ def _follow(path: Path, linear_solver, observers: Sequence[Observer], begin: flo
             if size < settings.smallest_step:
                 raise StepFailure(_give_up(path, load_factor, reason)) from None
             continue
-        path.solves += solution.solves
         kind, residual = solution.assembly.worst
         step = Step(
-            len(path.steps), load_factor, solution.state, solution.solves, solution.solves, residual,
+            len(path.steps), load_factor, solution.state, solution.solves, residual,
             balance(discretisation, solution.state, load_factor, solution.assembly.residual),
         )  # fmt: skip
         _keep(path, step, observers)
-        ratio = (settings.target_iterations / max(solution.solves, 1)) ** 1.0
+        ratio = settings.target_iterations / max(solution.solves, 1)
         size = min(max(size, d_factor) * float(np.clip(ratio, 0.4, GROWTH)), settings.largest_step)
 
 
