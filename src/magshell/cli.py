@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 SOLVED, NOT_SOLVED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
+_AT_THE_END = ("summary.json", "curve.png", "shape.png")
+
 _EXAMPLES = {
     "magshell": """
 examples:
@@ -147,6 +149,7 @@ def _run(given: argparse.Namespace) -> int:
     _say(console, problem.title)
     _say_doubts(console, describe(problem))
     directory = _made(pathlib.Path(given.out))
+    _forget_earlier_run(console, directory)
     progress = ProgressDisplay(console)
     observers = [HistoryWriter(directory), VtuWriter(directory), progress]
     try:
@@ -164,8 +167,9 @@ def _run(given: argparse.Namespace) -> int:
         return INTERRUPTED
     write_summary(path, directory)
     for name in problem.file.probes:
-        u = ", ".join(show(component, LENGTH) for component in path.probe(name).u[-1])
-        _say(console, f"{name}: u = ({u})")
+        u = path.probe(name).u[-1]
+        noise = 1e-9 * max(map(abs, u))
+        _say(console, f"{name}: u = ({', '.join(show(x if abs(x) > noise else 0.0, LENGTH) for x in u)})")
     for picture in draw_pictures(path, directory):
         _say(console, f"picture: {picture}" if isinstance(picture, pathlib.Path) else picture)
     _say(console, f"results: {directory} (history.csv, summary.json; shell.pvd opens in ParaView)")
@@ -184,6 +188,15 @@ def _made(directory: pathlib.Path) -> pathlib.Path:
     if not os.access(directory, os.W_OK | os.X_OK):
         raise InputError(f"--out {directory}: is not writable; name another folder")
     return directory
+
+
+def _forget_earlier_run(console: Console, directory: pathlib.Path) -> None:
+    """Remove what only the end of a run writes, so that no run leaves the end of another; say so."""
+    earlier = [file for name in _AT_THE_END if (file := directory / name).exists()]
+    for file in earlier:
+        file.unlink()
+    if earlier:
+        _say(console, f"the results of an earlier run in {directory} are replaced", style="yellow")
 
 
 def _check(given: argparse.Namespace) -> int:

@@ -104,7 +104,8 @@ def test_a_second_run_replaces_the_first(strip: str, tmp_path: Path) -> None:
     out = tmp_path / "out"
     assert main(["run", strip, "--out", str(out)]) == 0
     first = len(rows(out))
-    Path(strip).write_text(STRIP.replace('"5 mT"', '"4 mT"').replace('["1 mT", "3 mT"]', "[]"))
+    again = STRIP.replace('"5 mT"', '"4 mT"').replace('["1 mT", "3 mT"]', "[]")
+    Path(strip).write_text(again + "[solver]\nfirst_step = 0.5\n")
     assert main(["run", strip, "--out", str(out)]) == 0
     history = rows(out)
     assert history[-1]["B3"] == 4e-3
@@ -174,11 +175,18 @@ def test_disk_that_refuses(
         raise OSError(errno.ENOSPC, "No space left on device", str(self.file))
 
     monkeypatch.setattr(HistoryWriter, "converged", full)
-    assert main(["run", strip, "--out", str(tmp_path / "out")]) == 1
-    assert capsys.readouterr().err == f"error: {tmp_path}/out/history.csv: No space left on device\n"
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "summary.json").write_text("of an earlier run")
+    assert main(["run", strip, "--out", str(out)]) == 1
+    shown = capsys.readouterr()
+    assert shown.err == f"error: {out}/history.csv: No space left on device\n"
+    assert f"an earlier run in {out} are replaced" in shown.out
+    assert not (out / "summary.json").exists()
 
 
-def test_progress_on_a_terminal(strip: str) -> None:
+def test_progress_on_a_terminal(strip: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("magshell.progress.is_compiled", lambda kernel: False)
     text = io.StringIO()
     display = ProgressDisplay(Console(file=text, force_terminal=True, width=160))
     with display:
@@ -186,6 +194,12 @@ def test_progress_on_a_terminal(strip: str) -> None:
         display.cut(0.5, "too bold")
     assert display.path is path
     shown = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", text.getvalue())
-    for words in ("linear solver", "100%", "cut: too bold", "solved at 100 % (5 mT)"):
+    for words in (
+        "linear solver",
+        "compiling the kernels",
+        "100%",
+        "cut: too bold",
+        "solved at 100 % (5 mT)",
+    ):
         assert words in shown, f"{words!r} is not in {shown!r}"
     assert not re.search(r"step 1  \d", shown), "no line per step on a terminal"
