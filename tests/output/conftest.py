@@ -24,6 +24,7 @@ class FakeDiscretisation:
 
     def __init__(self, model, mesh):
         self.model, self.mesh = model, mesh
+        self.body = SimpleNamespace(remanence=np.tile([0.0, 0.0, 80e-3], (len(mesh.elements), 4, 1)))
         radial = mesh.points * [0, 1, 1]
         self.normals = radial / np.linalg.norm(radial, axis=1, keepdims=True)
 

@@ -73,6 +73,7 @@ def curve_figure(path: Path) -> Figure:
     if scale > 0:
         above = axes.secondary_xaxis("top", functions=(_times(scale), _times(1 / scale)))
         above.set_xlabel(r"$10^3\,|B^\mathrm{ext}|\,|B^\mathrm{rem}|\,/\,(\mu\,\mu_0)$", labelpad=8, **TEXT)
+        above.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
         above.tick_params(**TICKS)
     else:
         axes.spines["top"].set_visible(False)
@@ -111,7 +112,7 @@ def _times(factor: float) -> Any:
 
 def _load_per_mT(path: Path) -> float:
     """The nondimensional load of one millitesla: 10³ · 10⁻³ T · |Brem| / (mu mu0)."""
-    remanence = np.linalg.norm(path.discretisation.element_remanence(path.steps[0].state), axis=1).max()
+    remanence = np.linalg.norm(path.discretisation.body.remanence, axis=-1).max()
     return float(
         remanence / (path.model.shell.material.shear_modulus * path.model.coupling.vacuum_permeability)
     )

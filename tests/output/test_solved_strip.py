@@ -1,0 +1,123 @@
+"""Files, pictures and registered outputs of a strip that really was solved."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+import pyvista
+
+import magshell as ms
+from magshell.output.history import HistoryWriter
+from magshell.output.pictures import draw_pictures
+from magshell.output.registry import OUTPUTS
+from magshell.output.summary import write_summary
+from magshell.output.vtu import VtuWriter
+
+LENGTH, THICKNESS, REMANENCE = 11e-3, 1.1e-3, 143e-3
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    """A clamped strip that a field turns upwards, solved with the writers watching: path and folder."""
+    directory = tmp_path_factory.mktemp("results")
+    shell = ms.Shell(
+        ms.mesh.rectangle(LENGTH, 5e-3, elements=(4, 1)),
+        thickness=THICKNESS,
+        material=ms.MicropolarNeoHookean(303e3, 7.3e6, 30.3e3, THICKNESS / 10),
+        remanence=ms.remanence.constant([REMANENCE, 0, 0]),
+    )
+    model = ms.Model(
+        shell,
+        supports=[ms.Clamp("left")],
+        field=ms.UniformField([0, 0, 10e-3]),
+        probes={"tip": (LENGTH, 0, 0)},
+    )
+    return ms.solve(model, observers=[HistoryWriter(directory), VtuWriter(directory)]), directory
+
+
+def test_history_is_the_probes_path(results):
+    path, directory = results
+    rows = np.genfromtxt(directory / "history.csv", delimiter=",", names=True, deletechars="")
+    tip = path.probe("tip")
+    np.testing.assert_array_equal(rows["load_factor"], tip.load_factor)
+    np.testing.assert_array_equal(rows["B3"], tip.flux_density[:, 2])
+    for i in (1, 2, 3):
+        np.testing.assert_array_equal(rows[f"tip.u{i}"], tip.u[:, i - 1])
+
+
+def test_summary_has_what_scripts_count_on(results):
+    path, directory = results
+    summary = json.loads(write_summary(path, directory).read_text())
+    assert summary["converged"] is True
+    assert summary["steps"] == len(path.steps) - 1
+    assert summary["elements"] == 4
+    assert summary["dofs"] == path.discretisation.dofs
+    assert summary["iterations"] >= sum(step.iterations for step in path.steps)
+    assert summary["cpu_seconds"] > 0
+    assert isinstance(summary["reason"], str)
+    assert summary["probes"] == {"tip": path.steps[-1].state.u[path.model.probe_nodes["tip"]].tolist()}
+
+
+def test_series_holds_every_output_of_every_step(results, tmp_path):
+    path, directory = results
+    path.save(tmp_path / "copy.pvd")
+    for file in (directory / "shell.pvd", tmp_path / "copy.pvd"):
+        reader = pyvista.get_reader(str(file))
+        assert list(reader.time_values) == [step.load_factor for step in path.steps]
+        for step in path.steps:
+            reader.set_active_time_value(step.load_factor)
+            grid = reader.read()[0]
+            for name, output in OUTPUTS.items():
+                array = (grid.point_data if output.where == "point" else grid.cell_data)[name]
+                np.testing.assert_array_equal(array, output.evaluate(path.discretisation, step.state))
+
+
+def test_outputs_of_the_undeformed_strip(results):
+    path, _ = results
+    discretisation, state = path.discretisation, path.steps[0].state
+    nodes, elements = len(discretisation.mesh.points), 4
+    upright = np.tile([0.0, 0.0, 1.0], (nodes, 1))
+    expected = {
+        "displacement": np.zeros((nodes, 3)),
+        "director": upright,
+        "phi": np.zeros(nodes),
+        "rotation": np.zeros((nodes, 3)),
+        "normal": upright,
+        "remanence": np.tile([REMANENCE, 0, 0], (elements, 1)),
+        "thickness_ratio": np.ones(elements),
+        "energy": np.zeros(elements),
+        "element_group": np.zeros(elements),
+    }
+    assert list(expected) == list(OUTPUTS)
+    energy_scale = 303e3 * LENGTH * 5e-3 * THICKNESS
+    for name, values in expected.items():
+        found = OUTPUTS[name].evaluate(discretisation, state)
+        scale = energy_scale if name == "energy" else 1.0
+        np.testing.assert_allclose(found, values, atol=1e-14 * scale, err_msg=name)
+
+
+def test_outputs_of_the_bent_strip_agree_with_each_other(results):
+    path, _ = results
+    discretisation, state = path.discretisation, path.steps[-1].state
+    value = {name: output.evaluate(discretisation, state) for name, output in OUTPUTS.items()}
+    last = discretisation.mesh.elements[-1, :4]
+    d = value["director"][last].mean(axis=0)
+    turned = np.arctan2(-d[0], d[2])
+    assert turned > 0.3, "the end turns towards the field"
+    angle = -value["rotation"][last, 1].mean()
+    assert angle == pytest.approx(turned, rel=0.02), (angle, turned)
+    b = value["remanence"][-1]
+    assert np.arctan2(b[2], b[0]) == pytest.approx(turned, rel=0.02), (b, turned)
+    assert np.linalg.norm(b) == pytest.approx(REMANENCE, rel=0.02), b
+    assert value["thickness_ratio"][-1] == pytest.approx(np.linalg.norm(d), rel=0.005), np.linalg.norm(d)
+    assert value["energy"].min() > 0
+    assert value["energy"].argmax() == 0, "the strip bends most at the clamp"
+
+
+def test_pictures_of_the_strip(results, can_draw):
+    path, directory = results
+    assert draw_pictures(path, directory) == [directory / "curve.png", directory / "shape.png"]
+    shown = path.plot(color="u3")
+    assert shown._repr_png_().startswith(b"\x89PNG"), "a notebook shows it"
