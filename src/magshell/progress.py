@@ -68,7 +68,7 @@ class ProgressDisplay(Observer):
         solver = make_solver(settings.linear_solver).name
         self._line(f"{elements} elements, {unknowns} unknowns, linear solver: {solver}")
         if not is_compiled(assemble):
-            self._line("compiling the kernels for the first use of this version (up to a minute) ...")
+            self._line("compiling the kernels for the first use of this version (about a minute) ...")
 
     def iterated(self, iteration: Iteration) -> None:
         """Show how far the step is."""
@@ -110,9 +110,7 @@ class ProgressDisplay(Observer):
 
     def _load(self, load_factor: float) -> str:
         percent = f"{100.0 * load_factor:.4g} %"
-        return (
-            f"{percent} ({show(load_factor * self._magnitude, FLUX_DENSITY)})" if self._magnitude else percent
-        )
+        return f"{percent} ({show(load_factor * self._magnitude, FLUX_DENSITY)})" if self._magnitude else percent
 
     def _line(self, text: str) -> None:
         self._console.print(text, soft_wrap=True)
