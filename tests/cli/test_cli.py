@@ -38,9 +38,7 @@ def test_every_command_has_help_with_examples(command: list[str], capsys: pytest
 
 def test_help_is_quick_to_import() -> None:
     """Help needs no solver, no pydantic and no rich."""
-    code = (
-        'import sys, magshell.cli as c; c._parser(); print({"pydantic", "rich", "numba"} & set(sys.modules))'
-    )
+    code = 'import sys, magshell.cli as c; c._parser(); print({"pydantic", "rich", "numba"} & set(sys.modules))'
     shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert shown == "set()\n"
 
@@ -52,9 +50,7 @@ def test_examples_lists_all(capsys: pytest.CaptureFixture[str]) -> None:
     assert all(len(line.split()) > 1 for line in lines)
 
 
-def test_examples_copy(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_examples_copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(tmp_path)
     assert cli.main(["examples", "--copy", "gripper"]) == 0
     assert Path("gripper.toml").read_text() == examples.text("gripper")

@@ -110,9 +110,7 @@ def test_a_second_run_replaces_the_first(strip: str, tmp_path: Path) -> None:
     history = rows(out)
     assert history[-1]["B3"] == 4e-3
     assert len(history) < first
-    assert sorted(file.name for file in (out / "steps").iterdir()) == [
-        Path(name).name for name in series(out)
-    ]
+    assert sorted(file.name for file in (out / "steps").iterdir()) == [Path(name).name for name in series(out)]
 
 
 def test_not_solved(strip: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -271,9 +271,7 @@ def test_byte_order_mark_and_windows_line_ends_are_read(tmp_path: Path) -> None:
 
 def test_every_error_has_its_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "broken.toml"
-    file.write_text(
-        STRIP.replace('"5 mm"', '"5 kPa"').replace("[4, 1]", "[0, 1]").replace('"clamp"', '"clip"')
-    )
+    file.write_text(STRIP.replace('"5 mm"', '"5 kPa"').replace("[4, 1]", "[0, 1]").replace('"clamp"', '"clip"'))
     assert main(["check", str(file)]) == 2
     keys = [line.split(": ")[2] for line in capsys.readouterr().err.splitlines()]
     assert keys == ["mesh.width", "mesh.elements[0]", "supports[0].kind"]

@@ -39,9 +39,7 @@ NEW_WORDS = st.one_of(
             "#",
         ]
     ),
-    st.sampled_from(
-        ["left", "group", "kind", "clamp", "prescribe", "elements", "mesh", "field", "[[supports]]"]
-    ),
+    st.sampled_from(["left", "group", "kind", "clamp", "prescribe", "elements", "mesh", "field", "[[supports]]"]),
     st.integers(-3, 3000).map(str),
     st.floats().map(repr),
     st.text(max_size=5),
@@ -55,9 +53,7 @@ def damaged(draw: Callable[[st.SearchStrategy[Any]], Any]) -> str:
     text = draw(TEXTS)
     text = "\n".join(line.split("#")[0].rstrip() for line in text.splitlines() if line.split("#")[0].strip())
     for _ in range(draw(st.integers(1, 3))):
-        kind = draw(
-            st.sampled_from(["word", "word", "word", "lines", "remove", "repeat", "cut", "character"])
-        )
+        kind = draw(st.sampled_from(["word", "word", "word", "lines", "remove", "repeat", "cut", "character"]))
         lines = text.splitlines() or [""]
         i, j = (draw(st.integers(0, len(lines) - 1)) for _ in range(2))
         if kind == "word":

@@ -35,9 +35,7 @@ def test_figures_of_the_strip() -> None:
     expected = 1e3 * load / (mu * MU0)
     assert number(entry(report, "Field", "10³ |B| |Brem| / (mu mu0)")) == pytest.approx(expected, rel=1e-3)
     expected = 12 * load / (MU0 * young) * 20**2
-    assert number(entry(report, "Field", "12 |B| |Brem| / (mu0 E) (L/h)²")) == pytest.approx(
-        expected, rel=1e-3
-    )
+    assert number(entry(report, "Field", "12 |B| |Brem| / (mu0 E) (L/h)²")) == pytest.approx(expected, rel=1e-3)
     assert entry(report, "Material", "coupling modulus eta") == "30.3 kPa = 0.1 mu"
     assert entry(report, "Material", "length scale l") == "0.1 mm = 0.1 h"
     assert entry(report, "Mesh", "elements, nodes") == "4, 23"

@@ -24,9 +24,7 @@ from magshell.units import (
 
 DIMENSIONS = (LENGTH, STRESS, FLUX_DENSITY, ANGLE, INVERSE_LENGTH)
 EXACT = [(dimension, unit) for dimension in DIMENSIONS for unit in dimension.units if unit != "deg"]
-finite = st.floats(min_value=-1e100, max_value=1e100, allow_nan=False).filter(
-    lambda x: x == 0 or abs(x) > 1e-100
-)
+finite = st.floats(min_value=-1e100, max_value=1e100, allow_nan=False).filter(lambda x: x == 0 or abs(x) > 1e-100)
 
 
 @pytest.mark.parametrize(
