@@ -123,7 +123,11 @@ class Discretisation:
         free = carried & ~constraints.fixed
         self.carried, self.free = carried, free
         incidence = sp.csr_array(
-            (np.ones(mesh.elements.size, dtype=np.int32), mesh.elements.ravel(), np.arange(0, mesh.elements.size + 1, per_element)),
+            (
+                np.ones(mesh.elements.size, dtype=np.int32),
+                mesh.elements.ravel(),
+                np.arange(0, mesh.elements.size + 1, per_element),
+            ),
             shape=(len(mesh.elements), nodes),
         )
         graph = sp.csr_array(incidence.T @ incidence)
@@ -137,11 +141,12 @@ class Discretisation:
         local_node = np.concatenate([np.tile(np.arange(per_element), 3), np.tile(np.arange(self.rest), 7)])
         local_component = np.concatenate([np.repeat(np.arange(3), per_element), np.repeat(np.arange(3, 10), self.rest)])
         pairs = mesh.elements
-        offset = np.asarray(
-            row_offset[
-                np.repeat(pairs, per_element, axis=1).ravel(), np.tile(pairs, (1, per_element)).ravel()
-            ]
-        ).reshape(len(pairs), per_element, per_element) - 1
+        offset = (
+            np.asarray(
+                row_offset[np.repeat(pairs, per_element, axis=1).ravel(), np.tile(pairs, (1, per_element)).ravel()]
+            ).reshape(len(pairs), per_element, per_element)
+            - 1
+        )
         self.equations = loops.Equations(
             local_node.astype(np.int64),
             local_component.astype(np.int64),
@@ -279,7 +284,6 @@ class Discretisation:
         loops.recover_enhancement(self.body.elements, self.rest, increment, self._out.gain, self._out.offset, d_alpha)
         return d_alpha
 
-
     # -- what pictures and files see -----------------------------------------------------------------------------
 
     def nodal_director(self, state: State) -> FloatArray:
@@ -309,7 +313,9 @@ class Discretisation:
     def element_thickness_ratio(self, state: State) -> FloatArray:
         """Deformed over undeformed thickness (elements,), mean of |F D|."""
         F = evaluate(self.body, state).F
-        return np.asarray(self._volume_mean(np.linalg.norm(np.einsum("epkxy,epy->epkx", F, self.body.geometry.D), axis=-1)))
+        return np.asarray(
+            self._volume_mean(np.linalg.norm(np.einsum("epkxy,epy->epkx", F, self.body.geometry.D), axis=-1))
+        )
 
     def element_energy(self, state: State) -> FloatArray:
         """Strain energy (elements,), J, couple stress included."""
@@ -372,5 +378,3 @@ def _check_thickness(mesh: Mesh, volume: FloatArray) -> None:
         raise InputError(
             f"shell: thickness is larger than the curvature of element {bad[0]} allows (it would overlap itself inside)"
         )
-
-

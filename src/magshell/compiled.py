@@ -38,8 +38,8 @@ def _user_cache() -> Path:
 def cache_directory() -> Path:
     """Folder of the compiled kernels of this version of the sources (in the temporary folder if none is writable)."""
     digest = hashlib.sha256(Path(__file__).read_bytes())
-    for folder in KERNEL_FOLDERS:
-        for source in sorted((Path(__file__).parent / folder).rglob("*.py")):
+    for kernels in KERNEL_FOLDERS:
+        for source in sorted((Path(__file__).parent / kernels).rglob("*.py")):
             digest.update(source.read_bytes())
     name = f"kernels-{digest.hexdigest()[:16]}"
     with contextlib.suppress(OSError, RuntimeError):

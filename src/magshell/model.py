@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any
@@ -21,7 +21,7 @@ from magshell.supports import Constraints, Support, resolve
 from magshell.typing import FloatArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, eq=False)
 class Shell:
     """A shell of one material and thickness.
 
@@ -51,7 +51,7 @@ class Shell:
         thickness = _positive("shell: thickness", self.thickness, "m")
         if thickness > self.mesh.size:
             raise InputError(
-                f"shell: thickness is {thickness:g} m, larger than the whole body ({self.mesh.size:g} m); check the units"
+                f"shell: thickness is {thickness:g} m, larger than the body ({self.mesh.size:g} m); check the units"
             )
         values = []
         for name, value in zip(self.material._fields, self.material, strict=True):
@@ -68,7 +68,7 @@ class Shell:
         object.__setattr__(self, "material", material)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, eq=False)
 class Model:
     """A shell, held by supports, in a field.
 
@@ -93,9 +93,9 @@ class Model:
     supports: Sequence[Support]
     field: UniformField
     coupling: Any = None
-    probes: Mapping[str, ArrayLike] = field(default_factory=dict)
-    constraints: Constraints = field(init=False, repr=False)
-    probe_nodes: Mapping[str, int] = field(init=False, repr=False)
+    probes: Mapping[str, ArrayLike] = dataclasses.field(default_factory=dict)
+    constraints: Constraints = dataclasses.field(init=False, repr=False)
+    probe_nodes: Mapping[str, int] = dataclasses.field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         from magshell.magnetics.micropolar_couple import MicropolarCouple
@@ -108,7 +108,7 @@ class Model:
         nodes = {}
         for name, position in self.probes.items():
             try:
-                nodes[name] = mesh.node_at(position)
+                nodes[name] = mesh.node_at(np.asarray(position, dtype=float))
             except InputError as error:
                 raise InputError(f"probe '{name}': {error}") from None
         put(self, "probe_nodes", MappingProxyType(nodes))

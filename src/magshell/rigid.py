@@ -39,9 +39,7 @@ def _cross(vectors: FloatArray) -> FloatArray:
     """Matrices [v]× (n, 3, 3)."""
     zero = np.zeros(len(vectors))
     x, y, z = vectors.T
-    return np.stack(
-        [np.stack(row, axis=-1) for row in ((zero, -z, y), (z, zero, -x), (-y, x, zero))], axis=-2
-    )
+    return np.stack([np.stack(row, axis=-1) for row in ((zero, -z, y), (z, zero, -x), (-y, x, zero))], axis=-2)
 
 
 def check_supported(mesh: Mesh, normals: FloatArray, constraints: Constraints) -> None:
@@ -58,7 +56,9 @@ def check_supported(mesh: Mesh, normals: FloatArray, constraints: Constraints) -
                 f"supports: {which} floats freely, nothing holds it. Add a clamp, or supports against "
                 "three translations and three rotations"
             )
-        raise InputError(f"supports: {which} can still move as a rigid body: {_describe(motions)}. Add a support against it")
+        raise InputError(
+            f"supports: {which} can still move as a rigid body: {_describe(motions)}. Add a support against it"
+        )
 
 
 def _describe(motions: FloatArray) -> str:

@@ -80,7 +80,9 @@ class SymmetryPlane:
         """Four per node."""
         normal = np.asarray(self.normal, dtype=float)
         if normal.shape != (3,) or not np.all(np.isfinite(normal)) or not np.any(normal):
-            raise InputError(f"support on '{self.group}': normal is {self.normal}; it needs 3 components, not all zero")
+            raise InputError(
+                f"support on '{self.group}': normal is {self.normal!r}; it needs 3 components, not all zero"
+            )
         normal = normal / np.linalg.norm(normal)
         for field in ("u", "w"):
             yield Condition(self.group, field, normal, 0.0, optional=True)
@@ -119,19 +121,19 @@ class Prescribe:
             raise InputError(f"{where}: field is '{self.field}'. {suggest(self.field, FIELDS)}")
         value = np.asarray(self.value, dtype=float)
         if not np.all(np.isfinite(value)):
-            raise InputError(f"{where}: value is {self.value}; it must be finite")
+            raise InputError(f"{where}: value is {self.value!r}; it must be finite")
         if self.field == "phi" or self.component is not None:
             if self.field == "phi" and self.component is not None:
                 raise InputError(f"{where}: phi is a scalar, it has no component {self.component}; leave it out")
             if self.component not in (None, 1, 2, 3):
                 raise InputError(f"{where}: component is {self.component}; allowed are 1, 2, 3")
             if value.shape != ():
-                raise InputError(f"{where}: value is {self.value}; one component takes one number")
+                raise InputError(f"{where}: value is {self.value!r}; one component takes one number")
             axis = AXES[(self.component or 1) - 1]
             yield Condition(self.group, self.field, axis, float(value), optional=False)
             return
         if value.shape not in ((), (3,)):
-            raise InputError(f"{where}: value has shape {value.shape}; all components take 3 numbers, or one for all")
+            raise InputError(f"{where}: value has shape {value.shape}; it takes 3 numbers, or one for all components")
         for axis, component in zip(AXES, np.broadcast_to(value, 3), strict=True):
             yield Condition(self.group, self.field, axis, float(component), optional=False)
 
@@ -175,7 +177,8 @@ def resolve(mesh: Mesh, supports: Supports) -> Constraints:
     """
     nodes = len(mesh.points)
     fixed, value = np.zeros((nodes, 10), dtype=bool), np.zeros((nodes, 10))
-    frame_of, frames = np.full((nodes, 3), -1), []
+    frame_of = np.full((nodes, 3), -1)
+    frames: list[FloatArray] = []
     carries = np.zeros(nodes, dtype=bool)
     carries[mesh.corner_nodes] = True
     directions: dict[tuple[int, str], list[tuple[FloatArray, float, str]]] = {}
@@ -186,7 +189,7 @@ def resolve(mesh: Mesh, supports: Supports) -> Constraints:
                 absent = members[~carries[members]]
                 if absent.size == members.size and not condition.optional:
                     raise InputError(
-                        f"support on '{condition.group}': node {absent[0]} is a mid-side node, which carries only u; "
+                        f"support on '{condition.group}': node {absent[0]} is a mid-side node and carries only u; "
                         f"'{condition.field}' needs corner nodes"
                     )
                 members = members[carries[members]]
@@ -212,25 +215,24 @@ def resolve(mesh: Mesh, supports: Supports) -> Constraints:
     return Constraints(fixed, value, frame_of, np.array(frames).reshape(-1, 3, 3))
 
 
-def _orthonormal(
-    node: int, field: str, wanted: list[tuple[FloatArray, float, str]]
-) -> tuple[FloatArray, FloatArray]:
+def _orthonormal(node: int, field: str, wanted: list[tuple[FloatArray, float, str]]) -> tuple[FloatArray, FloatArray]:
     """Orthonormal directions and their values that say the same as all conditions of one node's field."""
     base: list[FloatArray] = []
     values: list[float] = []
-    for direction, value, group in wanted:
-        rest, left = direction.copy(), value
-        for vector, held in zip(base, values, strict=True):
-            rest = rest - (direction @ vector) * vector
-            left -= (direction @ vector) * held
+    for direction, wanted_value, group in wanted:
+        rest: FloatArray = direction.copy()
+        left = wanted_value
+        for known, held in zip(base, values, strict=True):
+            rest = rest - (direction @ known) * known
+            left -= float(direction @ known) * held
         length = float(np.linalg.norm(rest))
         if length > 1e-9:
             base.append(rest / length)
             values.append(left / length)
-        elif abs(left) > 1e-9 * max(abs(value), *(abs(held) for held in values)):
+        elif abs(left) > 1e-9 * max(abs(wanted_value), *(abs(held) for held in values)):
             others = sorted({other for _, _, other in wanted} - {group})
             raise InputError(
-                f"supports contradict each other at node {node}: '{group}' wants another value of {field} than "
+                f"supports contradict each other at node {node}: '{group}' wants another {field} than "
                 + (f"'{others[0]}'" if others else "an earlier support on the same group")
             )
     return np.array(base), np.array(values)

@@ -105,7 +105,7 @@ class Pardiso(_Equilibrated):
             from pypardiso import PyPardisoSolver
         except ImportError:
             raise InputError(
-                "solver: linear_solver is 'pardiso', which needs the extra: pip install 'magshell[pardiso]' (x86-64 only)"
+                "solver: linear_solver is 'pardiso', an extra: pip install 'magshell[pardiso]' (x86-64 only)"
             ) from None
         self._pardiso: Any = PyPardisoSolver(mtype=11)
         self._analysed = False
@@ -127,7 +127,7 @@ class Pardiso(_Equilibrated):
         return np.asarray(self._scale * self._pardiso._call_pardiso(self._matrix, scaled)[:, 0])
 
 
-SOLVERS = {"superlu": SuperLU, "pardiso": Pardiso}
+SOLVERS: dict[str, type[SuperLU] | type[Pardiso]] = {"superlu": SuperLU, "pardiso": Pardiso}
 
 
 def make_solver(name: str) -> LinearSolver:
@@ -140,5 +140,4 @@ def make_solver(name: str) -> LinearSolver:
     """
     if name not in SOLVERS:
         raise InputError(f"solver: linear_solver is '{name}'. {suggest(name, SOLVERS)}")
-    solver: LinearSolver = SOLVERS[name]()
-    return solver
+    return SOLVERS[name]()

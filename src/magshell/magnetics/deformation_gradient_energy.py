@@ -17,9 +17,7 @@ from magshell.magnetics.law import coupling_law
 from magshell.typing import FloatArray
 
 
-def _energy(
-    coupling: DeformationGradientEnergy, m: FloatArray, n: FloatArray, B: FloatArray
-) -> float:
+def _energy(coupling: DeformationGradientEnergy, m: FloatArray, n: FloatArray, B: FloatArray) -> float:
     return -(m[0] * B[0] + m[1] * B[1] + m[2] * B[2]) / coupling.vacuum_permeability
 
 

@@ -39,7 +39,7 @@ class UniformField:
         except (TypeError, ValueError) as error:
             raise InputError(f"field: flux_density and stops are numbers (T): {error}") from None
         if vector.shape != (3,) or not np.all(np.isfinite(vector)):
-            raise InputError(f"field: flux_density is {self.flux_density}; it needs 3 finite components (T)")
+            raise InputError(f"field: flux_density is {self.flux_density!r}; it needs 3 finite components (T)")
         magnitude = float(np.linalg.norm(vector))
         if not np.all(np.isfinite(stops)) or np.any(np.diff(stops) <= 0.0) or np.any(stops <= 0.0):
             raise InputError(f"field: stops are {stops.tolist()} T; they must be positive and increasing")

@@ -29,10 +29,8 @@ class Coupling(Protocol):
         """mu0, N/A²."""
 
 
-MagneticEnergy = Callable[[Coupling, FloatArray, FloatArray, FloatArray], float]
-ForcesAndTangent = Callable[
-    [Coupling, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray], None
-]
+MagneticEnergy = Callable[..., float]
+ForcesAndTangent = Callable[..., None]
 AnyCoupling = TypeVar("AnyCoupling", bound=type)
 
 energies_of: dict[type, MagneticEnergy | None] = {}

@@ -19,9 +19,7 @@ from magshell.magnetics.law import coupling_law
 from magshell.typing import FloatArray
 
 
-def _energy(
-    coupling: MicroRotationEnergy, m: FloatArray, n: FloatArray, B: FloatArray
-) -> float:
+def _energy(coupling: MicroRotationEnergy, m: FloatArray, n: FloatArray, B: FloatArray) -> float:
     return -(n[0] * B[0] + n[1] * B[1] + n[2] * B[2]) / coupling.vacuum_permeability
 
 

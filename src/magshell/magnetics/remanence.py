@@ -24,7 +24,7 @@ Remanence: TypeAlias = Callable[["Mesh", FloatArray], FloatArray]
 def _vector(name: str, value: ArrayLike) -> FloatArray:
     vector = np.asarray(value, dtype=float)
     if vector.shape != (3,) or not np.all(np.isfinite(vector)):
-        raise InputError(f"remanence: {name} is {value}; it needs 3 finite components")
+        raise InputError(f"remanence: {name} is {value!r}; it needs 3 finite components")
     return vector
 
 
@@ -73,9 +73,7 @@ def meridional(magnitude: float, axis: ArrayLike = (0.0, 0.0, 1.0), mirrored: bo
     return sample
 
 
-def circumferential(
-    magnitude: float, axis: ArrayLike = (0.0, 0.0, 1.0), towards: ArrayLike | None = None
-) -> Remanence:
+def circumferential(magnitude: float, axis: ArrayLike = (0.0, 0.0, 1.0), towards: ArrayLike | None = None) -> Remanence:
     """Along the circles about an axis through the origin, in the sense axis × radius.
 
     Parameters
@@ -105,9 +103,7 @@ def function(of_position: Callable[[FloatArray], ArrayLike]) -> Remanence:
     def sample(mesh: Mesh, points: FloatArray) -> FloatArray:
         values = np.asarray(of_position(points.reshape(-1, 3)), dtype=float)
         if values.shape != (points.size // 3, 3):
-            raise InputError(
-                f"remanence: the function returned shape {values.shape}; expected {(points.size // 3, 3)}"
-            )
+            raise InputError(f"remanence: the function returned shape {values.shape}; expected {(points.size // 3, 3)}")
         return values.reshape(points.shape)
 
     return sample

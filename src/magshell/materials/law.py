@@ -40,8 +40,8 @@ class Material(Protocol):
         """What is wrong with the parameters beyond their signs, a sentence each."""
 
 
-StrainEnergy = Callable[[Material, FloatArray], float]
-StressAndTangent = Callable[[Material, FloatArray, FloatArray, FloatArray], None]
+StrainEnergy = Callable[..., float]
+StressAndTangent = Callable[..., None]
 AnyMaterial = TypeVar("AnyMaterial", bound=type)
 
 strain_energies_of: dict[type, StrainEnergy] = {}

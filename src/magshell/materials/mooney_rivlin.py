@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from magshell.materials.law import Material, material_law
+from magshell.materials.law import material_law
 from magshell.materials.tensors import inverse_transpose
 from magshell.typing import FloatArray
 
@@ -59,9 +59,7 @@ def _stress_and_tangent(material: MicropolarMooneyRivlin, U: FloatArray, P: Floa
     pressure = mu1 + 2.0 * mu2 - 0.5 * bulk * (J**2 - 1.0)
     for p in range(3):
         for j in range(3):
-            P[p, j] = (
-                (mu1 + mu2 * I1) * U[p, j] - mu2 * cubic[p, j] - pressure * V[p, j] + eta * (U[p, j] - U[j, p])
-            )
+            P[p, j] = (mu1 + mu2 * I1) * U[p, j] - mu2 * cubic[p, j] - pressure * V[p, j] + eta * (U[p, j] - U[j, p])
             for q in range(3):
                 for l in range(3):
                     C[p, j, q, l] = (

@@ -36,11 +36,7 @@ def _energy(material: Material, U: FloatArray) -> float:
             square += U[p, j] * U[p, j]
             product += U[p, j] * U[j, p]
     return (
-        0.5 * (mu + eta) * square
-        - 0.5 * eta * product
-        + 0.5 * material.lame_lambda * log_J**2
-        - mu * log_J
-        - 1.5 * mu
+        0.5 * (mu + eta) * square - 0.5 * eta * product + 0.5 * material.lame_lambda * log_J**2 - mu * log_J - 1.5 * mu
     )
 
 

@@ -1,6 +1,7 @@
 r"""The element: points contracted with shape functions, quaternions reduced to spins, enhanced modes condensed.
 
-Everything nonlinear happens at the points (section.py), where x = G v with a constant map G (shape functions). Nodes carry quaternions, equations carry spins: q(ϑ) = exp(ϑ/2) q has the constant
+Everything nonlinear happens at the points (section.py), where x = G v with a constant map G (shape functions).
+Nodes carry quaternions, equations carry spins: q(ϑ) = exp(ϑ/2) q has the constant
 first derivative T = ∂q/∂ϑ and the second derivative -¼ δ_ab q. With T̂ the identity but for a block T per node,
 
     r = Σ T̂ᵀGᵀ g,      K = Σ T̂ᵀGᵀ H G T̂ - ¼ (q · r_q) I on each node's spins.
@@ -18,17 +19,22 @@ q (4 × 4) or ϑ (3 × 4), α (3 × 2).
 
 from __future__ import annotations
 
-import numpy as np
-
 from magshell.compiled import inline
 from magshell.shell.interpolation import Interpolation
-from magshell.shell.section import ENHANCED, PHI, Q, Q1, U1, W1, W
+from magshell.shell.point import ENHANCED, PHI, Q1, U1, W1, Q, W
 from magshell.typing import FloatArray, IntArray
 
 
 @inline
 def gather(
-    nodes: IntArray, u: FloatArray, w: FloatArray, phi: FloatArray, q: FloatArray, alpha: FloatArray, rest: int, v: FloatArray
+    nodes: IntArray,
+    u: FloatArray,
+    w: FloatArray,
+    phi: FloatArray,
+    q: FloatArray,
+    alpha: FloatArray,
+    rest: int,
+    v: FloatArray,
 ) -> None:
     """Fill v with the element's values; quaternions are aligned to the first node's hemisphere."""
     count = nodes.size
@@ -169,7 +175,9 @@ def transpose(A: FloatArray, out: FloatArray) -> None:
 
 
 @inline
-def condense(Kt: FloatArray, r: FloatArray, size: int, gain: FloatArray, offset: FloatArray, factor: FloatArray) -> bool:
+def condense(
+    Kt: FloatArray, r: FloatArray, size: int, gain: FloatArray, offset: FloatArray, factor: FloatArray
+) -> bool:
     """Eliminate the unknowns from `size` on: Kᵀ and r condensed in place, Δα = -offset - gain Δv.
 
     Gauss–Jordan with pivoting on [K_αα | K_αv | r_α], in `factor`; False where K_αα is singular.

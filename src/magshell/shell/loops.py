@@ -24,7 +24,8 @@ from magshell.shell.element import (
 )
 from magshell.shell.geometry import SectionGeometry
 from magshell.shell.interpolation import Interpolation
-from magshell.shell.section import SIZE, predicted_stress, section, workspace
+from magshell.shell.point import SIZE, workspace
+from magshell.shell.section import predicted_stress, section
 from magshell.shell.state import State
 from magshell.typing import FloatArray, IntArray
 
@@ -178,7 +179,7 @@ def assemble(
     equations: Equations,
     out: Assembled,
 ) -> tuple[int, float]:
-    """Residual and, with `tangent`, the condensed tangent; returns the first inverted element (or -1) and det F there."""
+    """Residual and, with `tangent`, the condensed tangent; returns the first inverted element (or -1), det F there."""
     shape, geometry = body.shape, body.geometry
     points, count, rest = shape.du.shape[0], shape.du.shape[2], shape.rest.shape[1]
     modes = geometry.enhancement.shape[2]
@@ -188,7 +189,12 @@ def assemble(
     v, x, w, T, radial = np.zeros(full), np.zeros(SIZE), workspace(), np.zeros((rest, 4, 3)), np.zeros(rest)
     g, g_mixed, H = np.zeros((SIZE, 2)), np.zeros(SIZE), np.zeros((SIZE, SIZE))
     scratch, scratch_2 = np.zeros((4, size)), np.zeros((4, 2))
-    GH, HG, Kt, r = np.zeros((size, SIZE)), np.zeros((SIZE, size)), np.zeros((size, size)), np.zeros((size, 2))
+    GH, HG, Kt, r = (
+        np.zeros((size, SIZE)),
+        np.zeros((SIZE, size)),
+        np.zeros((size, size)),
+        np.zeros((size, 2)),
+    )
     r_sum, factor = np.zeros(size), np.zeros((3 * modes, 3 * modes + nodal + 1))
     row_position = np.zeros(nodal, dtype=np.int64)
     kind_of = equations.local_component
@@ -272,7 +278,12 @@ def _gather_increment(nodes: IntArray, increment: FloatArray, count: int, rest: 
 
 @jit
 def recover_enhancement(
-    elements: IntArray, rest: int, increment: FloatArray, gain: FloatArray, offset: FloatArray, d_alpha: FloatArray
+    elements: IntArray,
+    rest: int,
+    increment: FloatArray,
+    gain: FloatArray,
+    offset: FloatArray,
+    d_alpha: FloatArray,
 ) -> None:
     """Fill Δα (elements, modes, 3) = -offset - gain Δv."""
     count, modes = elements.shape[1], d_alpha.shape[1]
@@ -290,7 +301,12 @@ def recover_enhancement(
 
 @jit
 def predict_stresses(
-    material: Material, body: Body, state: State, increment: FloatArray, d_alpha: FloatArray, stresses: Stresses
+    material: Material,
+    body: Body,
+    state: State,
+    increment: FloatArray,
+    d_alpha: FloatArray,
+    stresses: Stresses,
 ) -> None:
     """Fill the stresses predicted linearly from `state` for a nodal increment (nodes, 10) and Δα."""
     shape, geometry = body.shape, body.geometry

@@ -17,15 +17,11 @@ micro-rotation, δg_i - δω × g_i, so that per unit volume
           - 2 t^i · (δω × δg_i) + t^i · (δω × (δω × g_i))           geometric part
           + 4 z φ' t^3 · δd                                         g_3 is bilinear in φ and d.
 
-The couple stress needs no sum over z: with c^αβ = gamma Σ volume G^α · G^β it is ½ c^αβ κ_α · κ_β.
-
 In the mixed tangent (Magisano, Leonetti and Garcea 2017) the geometric part uses stresses P', κ' predicted linearly by
 the last iteration in place of those of the state; the gradient stays exact.
 """
 
 from __future__ import annotations
-
-from typing import NamedTuple
 
 import numpy as np
 
@@ -35,12 +31,12 @@ from magshell.magnetics.law import Coupling
 from magshell.materials import law as material_laws
 from magshell.materials.law import Material
 from magshell.materials.tensors import inverse_transpose
+from magshell.shell.couple_stress import couple_stress
 from magshell.shell.geometry import SectionGeometry
+from magshell.shell.kinematics import base_vectors, moduli_on_legs, stress_vectors, stretch
+from magshell.shell.point import ENHANCED, PHI, Q1, U1, W1, Q, W, Workspace
 from magshell.shell.rotation import rotation_matrix, spin_map, wryness_maps
 from magshell.typing import FloatArray
-
-SIZE = 31
-U1, W1, W, ENHANCED, PHI, Q, Q1 = 0, 6, 12, 15, 18, 19, 23
 
 
 def _stress_and_tangent(material: Material, U: FloatArray, P: FloatArray, C: FloatArray) -> None:
@@ -63,127 +59,6 @@ def _forces_and_tangent(
 also_compiled(inverse_transpose)
 choose_by_type(_stress_and_tangent, material_laws.stresses_of)
 choose_by_type(_forces_and_tangent, coupling_laws.forces_of)
-
-
-class Workspace(NamedTuple):
-    """Scratch arrays of one thread."""
-
-    R: FloatArray
-    V: FloatArray
-    g: FloatArray
-    U: FloatArray
-    P: FloatArray
-    C: FloatArray
-    C_half: FloatArray
-    t: FloatArray
-    t_mixed: FloatArray
-    vectors: FloatArray
-    K_m: FloatArray
-    K_ω: FloatArray
-    K_g: FloatArray
-    K_gω: FloatArray
-    H_gω: FloatArray
-    H_ωg: FloatArray
-    H_ωω: FloatArray
-    L: FloatArray
-    M: FloatArray
-    kappa: FloatArray
-    stress: FloatArray
-
-
-@inline
-def workspace() -> Workspace:
-    """Allocate the scratch arrays."""
-    return Workspace(
-        np.zeros((3, 3)),
-        np.zeros((3, 4)),
-        np.zeros((3, 3)),
-        np.zeros((3, 3)),
-        np.zeros((3, 3)),
-        np.zeros((3, 3, 3, 3)),
-        np.zeros((3, 3, 3, 3)),
-        np.zeros((3, 3)),
-        np.zeros((3, 3)),
-        np.zeros((6, 3)),
-        np.zeros((3, 3)),
-        np.zeros((3, 3)),
-        np.zeros((3, 3, 3, 3)),
-        np.zeros((3, 3, 3)),
-        np.zeros((Q, 3)),
-        np.zeros((3, Q)),
-        np.zeros((3, 3)),
-        np.zeros((2, 3, 4)),
-        np.zeros((2, 3, 4)),
-        np.zeros((2, 3)),
-        np.zeros((2, 3)),
-    )
-
-
-@inline
-def base_vectors(geometry: SectionGeometry, e: int, p: int, z: float, x: FloatArray, g: FloatArray) -> None:
-    """Fill g (3, 3): rows g_1, g_2, g_3 at the level z."""
-    for i in range(3):
-        g[0, i] = geometry.A[e, p, 0, i] + x[U1 + i] + z * (geometry.dD[e, p, 0, i] + x[W1 + i])
-        g[1, i] = geometry.A[e, p, 1, i] + x[U1 + 3 + i] + z * (geometry.dD[e, p, 1, i] + x[W1 + 3 + i])
-        g[2, i] = (1.0 + 2.0 * z * x[PHI]) * (geometry.D[e, p, i] + x[W + i]) + x[ENHANCED + i]
-
-
-@inline
-def stretch(R: FloatArray, g: FloatArray, G: FloatArray, U: FloatArray) -> float:
-    """Fill U = R̃ᵀ (g_i ⊗ G^i) and return its determinant."""
-    for i in range(3):
-        r0 = R[0, i] * g[0, 0] + R[1, i] * g[0, 1] + R[2, i] * g[0, 2]
-        r1 = R[0, i] * g[1, 0] + R[1, i] * g[1, 1] + R[2, i] * g[1, 2]
-        r2 = R[0, i] * g[2, 0] + R[1, i] * g[2, 1] + R[2, i] * g[2, 2]
-        for j in range(3):
-            U[i, j] = r0 * G[0, j] + r1 * G[1, j] + r2 * G[2, j]
-    return (
-        U[0, 0] * (U[1, 1] * U[2, 2] - U[1, 2] * U[2, 1])
-        + U[0, 1] * (U[1, 2] * U[2, 0] - U[1, 0] * U[2, 2])
-        + U[0, 2] * (U[1, 0] * U[2, 1] - U[1, 1] * U[2, 0])
-    )
-
-
-@inline
-def _stress_vectors(R: FloatArray, P: FloatArray, G: FloatArray, volume: float, t: FloatArray) -> None:
-    """Fill t (3, 3): rows t^a = volume R̃ P G^a."""
-    for a in range(3):
-        p0 = volume * (P[0, 0] * G[a, 0] + P[0, 1] * G[a, 1] + P[0, 2] * G[a, 2])
-        p1 = volume * (P[1, 0] * G[a, 0] + P[1, 1] * G[a, 1] + P[1, 2] * G[a, 2])
-        p2 = volume * (P[2, 0] * G[a, 0] + P[2, 1] * G[a, 1] + P[2, 2] * G[a, 2])
-        for i in range(3):
-            t[a, i] = R[i, 0] * p0 + R[i, 1] * p1 + R[i, 2] * p2
-
-
-@inline
-def _moduli(R: FloatArray, G: FloatArray, volume: float, C: FloatArray, half: FloatArray, K: FloatArray) -> None:
-    """Fill K[a, i, b, k] = volume R_ip R_kq G^a_j G^b_l C_pjql, one leg after the other."""
-    for p in range(3):
-        for j in range(3):
-            for q in range(3):
-                c0, c1, c2 = C[p, j, q, 0], C[p, j, q, 1], C[p, j, q, 2]
-                for b in range(3):
-                    half[p, j, q, b] = volume * (c0 * G[b, 0] + c1 * G[b, 1] + c2 * G[b, 2])
-    for p in range(3):
-        for j in range(3):
-            for b in range(3):
-                c0, c1, c2 = half[p, j, 0, b], half[p, j, 1, b], half[p, j, 2, b]
-                for k in range(3):
-                    C[p, j, b, k] = R[k, 0] * c0 + R[k, 1] * c1 + R[k, 2] * c2
-    for p in range(3):
-        for a in range(3):
-            for b in range(3):
-                for k in range(3):
-                    half[p, a, b, k] = (
-                        G[a, 0] * C[p, 0, b, k] + G[a, 1] * C[p, 1, b, k] + G[a, 2] * C[p, 2, b, k]
-                    )
-    for a in range(3):
-        for i in range(3):
-            for b in range(3):
-                for k in range(3):
-                    K[a, i, b, k] = (
-                        R[i, 0] * half[0, a, b, k] + R[i, 1] * half[1, a, b, k] + R[i, 2] * half[2, a, b, k]
-                    )
 
 
 @inline
@@ -217,7 +92,14 @@ def _level_hessian(w: Workspace, c_ω: FloatArray) -> None:
 
 @inline
 def _scatter_level(
-    w: Workspace, z: float, phi: float, d2z: FloatArray, b: FloatArray, t3: FloatArray, volume: float, H: FloatArray
+    w: Workspace,
+    z: float,
+    phi: float,
+    d2z: FloatArray,
+    b: FloatArray,
+    t3: FloatArray,
+    volume: float,
+    H: FloatArray,
 ) -> None:
     """Chain (g_1, g_2, g_3, ω) to (u,α  w,α  w  ā  φ  ω): add to H, H_gω, H_ωg.
 
@@ -279,86 +161,6 @@ def _spin_to_quaternion(w: Workspace, q: FloatArray, n2: float, c: FloatArray, H
 
 
 @inline
-def _couple_stress(
-    w: Workspace,
-    modulus: float,
-    metric: FloatArray,
-    x: FloatArray,
-    n2: float,
-    kappa_mixed: FloatArray,
-    mixed: bool,
-    tangent: bool,
-    g: FloatArray,
-    g_mixed: FloatArray,
-    H: FloatArray,
-) -> None:
-    """Add ½ c^αβ κ_α · κ_β: gradient and Hessian with respect to (q̂, q̂,1, q̂,2)."""
-    q = x[Q : Q + 4]
-    for a in range(2):
-        wryness_maps(q, x[Q1 + 4 * a : Q1 + 4 * a + 4], n2, w.L[a], w.M[a], w.kappa[a])
-    for a in range(2):
-        for i in range(3):
-            w.stress[a, i] = modulus * (metric[a, 0] * w.kappa[0, i] + metric[a, 1] * w.kappa[1, i])
-    for a in range(2):
-        for i in range(3):
-            for c in range(4):
-                g[Q + c] += w.M[a, i, c] * w.stress[a, i]
-                g[Q1 + 4 * a + c] += w.L[a, i, c] * w.stress[a, i]
-    if not tangent:
-        return
-    if mixed:
-        for a in range(2):
-            for i in range(3):
-                w.stress[a, i] = modulus * (metric[a, 0] * kappa_mixed[0, i] + metric[a, 1] * kappa_mixed[1, i])
-    for a in range(2):
-        for i in range(3):
-            for c in range(4):
-                g_mixed[Q + c] += w.M[a, i, c] * w.stress[a, i]
-                g_mixed[Q1 + 4 * a + c] += w.L[a, i, c] * w.stress[a, i]
-    for a in range(2):
-        for b in range(2):
-            c_ab = modulus * metric[a, b]
-            for r in range(4):
-                for c in range(4):
-                    qq, qr, rr = 0.0, 0.0, 0.0
-                    for i in range(3):
-                        qq += w.M[a, i, r] * w.M[b, i, c]
-                        qr += w.M[a, i, r] * w.L[b, i, c]
-                        rr += w.L[a, i, r] * w.L[b, i, c]
-                    H[Q + r, Q + c] += c_ab * qq
-                    H[Q + r, Q1 + 4 * b + c] += c_ab * qr
-                    H[Q1 + 4 * b + c, Q + r] += c_ab * qr
-                    H[Q1 + 4 * a + r, Q1 + 4 * b + c] += c_ab * rr
-    two = 2.0 / n2
-    for a in range(2):
-        m = w.stress[a]
-        at = Q1 + 4 * a
-        # δq̂ · Z δr with m · vec(δq̂* δr) = δq̂ · Z δr
-        for i in range(3):
-            j, k = (i + 1) % 3, (i + 2) % 3
-            _add_pair(H, Q, at + 1 + i, two * m[i])
-            _add_pair(H, Q + 1 + i, at, -two * m[i])
-            _add_pair(H, Q + 1 + k, at + 1 + j, two * m[i])
-            _add_pair(H, Q + 1 + j, at + 1 + k, -two * m[i])
-        # derivatives of the factor 1/n²
-        kappa_m = w.kappa[a, 0] * m[0] + w.kappa[a, 1] * m[1] + w.kappa[a, 2] * m[2]
-        for r in range(4):
-            m_L = w.L[a, 0, r] * m[0] + w.L[a, 1, r] * m[1] + w.L[a, 2, r] * m[2]
-            m_M = w.M[a, 0, r] * m[0] + w.M[a, 1, r] * m[1] + w.M[a, 2, r] * m[2]
-            for c in range(4):
-                _add_pair(H, Q + c, at + r, -two * q[c] * m_L)
-                H[Q + r, Q + c] -= two * q[c] * m_M
-                H[Q + c, Q + r] -= two * q[c] * m_M
-            H[Q + r, Q + r] -= two * kappa_m
-
-
-@inline
-def _add_pair(H: FloatArray, i: int, j: int, value: float) -> None:
-    H[i, j] += value
-    H[j, i] += value
-
-
-@inline
 def section(
     material: Material,
     couple_modulus: float,
@@ -403,7 +205,7 @@ def section(
         if not J > 0.0:
             return J
         _stress_and_tangent(material, w.U, w.P, w.C)
-        _stress_vectors(w.R, w.P, G, volume, w.t)
+        stress_vectors(w.R, w.P, G, volume, w.t)
         for a in range(3):
             b[a] = G[a, 0] * rem[0] + G[a, 1] * rem[1] + G[a, 2] * rem[2]
         for i in range(3):
@@ -420,12 +222,12 @@ def section(
                 couple[i] -= w.g[a, j] * w.t[a, l] - w.g[a, l] * w.t[a, j]
         if tangent:
             if mixed:
-                _stress_vectors(w.R, P_mixed[k], G, volume, w.t_mixed)
+                stress_vectors(w.R, P_mixed[k], G, volume, w.t_mixed)
             else:
                 for a in range(3):
                     for i in range(3):
                         w.t_mixed[a, i] = w.t[a, i]
-            _moduli(w.R, G, volume, w.C, w.C_half, w.K_g)
+            moduli_on_legs(w.R, G, volume, w.C, w.C_half, w.K_g)
             _level_hessian(w, couple_mixed)
             for i in range(3):
                 f[i] = w.t_mixed[2, i] + volume * b[2] * f[i]
@@ -443,9 +245,7 @@ def section(
             for i in range(3):
                 g_mixed[Q + r] += 2.0 * w.V[i, r] * couple_mixed[i]
         _spin_to_quaternion(w, q, n2, couple_mixed, H)
-    _couple_stress(
-        w, couple_modulus, geometry.metric[e, p], x, n2, kappa_mixed, mixed, tangent, g[:, 0], g_mixed, H
-    )
+    couple_stress(w, couple_modulus, geometry.metric[e, p], x, n2, kappa_mixed, mixed, tangent, g[:, 0], g_mixed, H)
     return least
 
 

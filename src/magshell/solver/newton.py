@@ -59,7 +59,7 @@ def newton(
     StepFailure
         No convergence, an inverted element, a singular tangent.
     """
-    state, stresses, imposed = trial
+    state, imposed = trial.state, trial.imposed
     residuals: list[float] = []
     assembly = _assemble(discretisation, trial, load_factor, settings)
     while True:
@@ -71,7 +71,9 @@ def newton(
         if residual <= settings.tolerance and imposed is None:
             return Solution(state, assembly, len(residuals) - 1, residuals)
         if len(residuals) > settings.max_iterations:
-            raise StepFailure(f"no convergence in {settings.max_iterations} iterations (residual of {kind}: {residual:.1e})")
+            raise StepFailure(
+                f"no convergence in {settings.max_iterations} iterations (residual of {kind}: {residual:.1e})"
+            )
         if len(residuals) > 6 and residual > 1e3 * min(residuals):
             raise StepFailure(f"the iteration diverges (residual of {kind}: {residual:.1e})")
         assert assembly.matrix is not None
@@ -94,7 +96,7 @@ def newton(
             except InvertedElement as inverted:
                 if halving == HALVINGS:
                     raise StepFailure(_inverted(inverted)) from None
-        state, stresses, imposed = trial
+        state, imposed = trial.state, trial.imposed
 
 
 def _assemble(discretisation: Discretisation, trial: Trial, load_factor: float, settings: Settings) -> Assembly:
@@ -108,7 +110,9 @@ def _inverted(inverted: InvertedElement) -> str:
 
 def _singular(discretisation: Discretisation, singular: SingularMatrix) -> str:
     direction = np.abs(discretisation.expand(singular.null_vector))
-    lengths = np.array([discretisation.mesh.size] * 3 + [1.0] * 3 + [1.0 / discretisation.model.shell.thickness] + [1.0] * 3)
+    lengths = np.array(
+        [discretisation.mesh.size] * 3 + [1.0] * 3 + [1.0 / discretisation.model.shell.thickness] + [1.0] * 3
+    )
     node, column = np.unravel_index(np.argmax(direction / lengths), direction.shape)
     name = ("u1", "u2", "u3", "w1", "w2", "w3", "phi", "omega1", "omega2", "omega3")[column]
     position = ", ".join(f"{1e3 * x:.4g}" for x in discretisation.mesh.points[node])

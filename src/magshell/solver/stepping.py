@@ -12,7 +12,6 @@ from magshell.assembly import Discretisation, InvertedElement
 from magshell.errors import SolveError
 from magshell.linalg import LinearSolver, make_solver, nested_dissection
 from magshell.model import Model
-from magshell.shell.state import State
 from magshell.solver.balance import balance
 from magshell.solver.events import Iteration, Observer
 from magshell.solver.newton import StepFailure, Trial, newton
@@ -92,7 +91,9 @@ def _follow(path: Path, linear_solver: LinearSolver, observers: Sequence[Observe
             trial = _predicted(path, load_factor)
             solution = newton(discretisation, linear_solver, trial, load_factor, settings, report)
         except (StepFailure, InvertedElement) as failure:
-            reason = str(failure) if isinstance(failure, StepFailure) else f"element {failure.element} is turned inside out"
+            reason = (
+                str(failure) if isinstance(failure, StepFailure) else f"element {failure.element} is turned inside out"
+            )
             path.cuts += 1
             for observer in observers:
                 observer.cut(load_factor, reason)
@@ -100,9 +101,8 @@ def _follow(path: Path, linear_solver: LinearSolver, observers: Sequence[Observe
             if size < settings.smallest_step:
                 raise StepFailure(_give_up(path, load_factor, reason)) from None
             continue
-        kind, residual = solution.assembly.worst
         step = Step(
-            len(path.steps), load_factor, solution.state, solution.solves, residual,
+            len(path.steps), load_factor, solution.state, solution.solves, solution.residuals[-1],
             balance(discretisation, solution.state, load_factor, solution.assembly.residual),
         )  # fmt: skip
         _keep(path, step, observers)
@@ -126,7 +126,9 @@ def _predicted(path: Path, load_factor: float) -> Trial:
     increment, d_alpha = _extrapolated(steps, load_factor)
     increment = discretisation.with_imposed(increment, load_factor - last.load_factor)
     return Trial(
-        last.state.moved(increment, d_alpha), discretisation.predicted_stresses(last.state, increment, d_alpha), None
+        last.state.moved(increment, d_alpha),
+        discretisation.predicted_stresses(last.state, increment, d_alpha),
+        None,
     )
 
 
