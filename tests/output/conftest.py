@@ -69,9 +69,7 @@ class FakePath:
         X = self.discretisation.mesh.points
         s = X[:, 0] / LENGTH
         bend = np.tanh(2 * load)
-        u = np.stack(
-            [-0.4 * LENGTH * s**3 * bend, 0.05 * X[:, 1] * s, LENGTH * s**2 * (0.8 + 20 * X[:, 2])], axis=1
-        )
+        u = np.stack([-0.4 * LENGTH * s**3 * bend, 0.05 * X[:, 1] * s, LENGTH * s**2 * (0.8 + 20 * X[:, 2])], axis=1)
         q = np.zeros((len(u), 4))
         q[:, 0], q[:, 2] = np.cos(bend * s / 2), -np.sin(bend * s / 2)
         state = SimpleNamespace(u=u * bend, w=6 * u * bend, phi=-0.3 * s * bend / RADIUS, q=q)

@@ -248,9 +248,7 @@ def test_trial_is_made_once(fresh_trial, monkeypatch):
 
 def test_nothing_heavy_is_imported_before_it_is_needed():
     modules = ("history", "summary", "vtu", "pictures", "registry")
-    code = ";".join(
-        [*(f"import magshell.output.{name}" for name in modules), "import sys; print(*sys.modules)"]
-    )
+    code = ";".join([*(f"import magshell.output.{name}" for name in modules), "import sys; print(*sys.modules)"])
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = {name.split(".")[0] for name in ran.stdout.split()}
     assert not loaded & {"pyvista", "vtkmodules", "matplotlib", "PIL"}

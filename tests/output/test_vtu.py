@@ -69,9 +69,7 @@ def test_files_hold_exactly_the_registered_outputs(path, written):
             array = (grid.point_data if output.where == "point" else grid.cell_data)[name]
             rows = len(grid.points) if output.where == "point" else grid.n_cells
             assert array.shape == ((rows,) if output.components == 1 else (rows, 3)), name
-            np.testing.assert_array_equal(
-                array, output.evaluate(path.discretisation, step.state), err_msg=name
-            )
+            np.testing.assert_array_equal(array, output.evaluate(path.discretisation, step.state), err_msg=name)
 
 
 def test_field_and_groups_are_recorded(path, written):
@@ -117,9 +115,7 @@ def test_disk_error_names_the_file(path, tmp_path):
 
 def test_registry_is_unambiguous_and_complete():
     words = [word for output in OUTPUTS.values() for word in {output.name, output.symbol}]
-    words += [
-        f"{output.symbol}{i}" for output in OUTPUTS.values() if output.components == 3 for i in (1, 2, 3)
-    ]
+    words += [f"{output.symbol}{i}" for output in OUTPUTS.values() if output.components == 3 for i in (1, 2, 3)]
     assert len(words) == len(set(words))
     for name, output in OUTPUTS.items():
         assert output.name == name

@@ -58,9 +58,7 @@ def curve_figure(path: Path) -> Figure:
     load = np.array([step.load_factor for step in path.steps])
     x = load if field == 0 else 1e3 * np.abs(load) * field
     for label, values, style in sorted(_curves(path), key=lambda curve: -curve[1][-1]):
-        axes.plot(
-            x, 1e3 * values, label=label, markersize=5, markeredgecolor="white", markeredgewidth=0.6, **style
-        )
+        axes.plot(x, 1e3 * values, label=label, markersize=5, markeredgecolor="white", markeredgewidth=0.6, **style)
     axes.axhline(0, color="#9aa3ad", linewidth=0.8, zorder=1)
     axes.set_xlabel("load factor" if field == 0 else r"$|B^\mathrm{ext}|$ (mT)", **TEXT)
     axes.set_ylabel("displacement (mm)", **TEXT)
@@ -84,9 +82,7 @@ def curve_figure(path: Path) -> Figure:
 def _curves(path: Path) -> list[tuple[str, FloatArray, dict[str, Any]]]:
     """Label, values in m and style of every curve worth drawing."""
     states = [step.state for step in path.steps]
-    probes = {
-        name: np.array([state.u[node] for state in states]) for name, node in path.model.probe_nodes.items()
-    }
+    probes = {name: np.array([state.u[node] for state in states]) for name, node in path.model.probe_nodes.items()}
     if not probes:
         largest = np.array([np.linalg.norm(state.u, axis=1).max() for state in states])
         return [("largest $|u|$", largest, {"color": COLOURS[0], "marker": "o", "linewidth": 2.0})]
@@ -113,6 +109,4 @@ def _times(factor: float) -> Any:
 def _load_per_mT(path: Path) -> float:
     """The nondimensional load of one millitesla: 10³ · 10⁻³ T · |Brem| / (mu mu0)."""
     remanence = np.linalg.norm(path.discretisation.body.remanence, axis=-1).max()
-    return float(
-        remanence / (path.model.shell.material.shear_modulus * path.model.coupling.vacuum_permeability)
-    )
+    return float(remanence / (path.model.shell.material.shear_modulus * path.model.coupling.vacuum_permeability))

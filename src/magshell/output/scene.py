@@ -1,7 +1,8 @@
 """The three-dimensional part of a picture of the shape: surface, edges, undeformed outline and field arrow.
 
-The camera looks in parallel projection, so that a position in space is a linear function of the pixel and
-lettering can be set on the picture afterwards.
+The camera looks in parallel projection: a place on the picture is a linear function of the position in space, so
+lettering can be set afterwards, and what moves along the line of sight (lines, to be in front of or behind the
+body) stays where it is on the picture.
 """
 
 from __future__ import annotations
@@ -125,6 +126,7 @@ def draw(
     camera = fit(kept, axes, shape[0] / shape[1])
     size = 2 * camera.half_height
     nearer = 2e-3 * size * axes[2]
+    behind = -4 * size * axes[2]
 
     def lines(positions: FloatArray, triples: AnyArray) -> Any:
         curves = tessellation.edges(positions, triples)
@@ -132,11 +134,7 @@ def draw(
         cells = np.insert(numbers, 0, curves.shape[1], axis=1)
         return pyvista.PolyData(curves.reshape(-1, 3), lines=cells.ravel())
 
-    edges = (
-        element_edges(mesh.elements)
-        if len(mesh.elements) <= MOST_ELEMENTS_WITH_EDGES
-        else mesh.boundary_edges
-    )
+    edges = element_edges(mesh.elements) if len(mesh.elements) <= MOST_ELEMENTS_WITH_EDGES else mesh.boundary_edges
     body = pyvista.PolyData.from_regular_faces(surface.points, surface.triangles)
     body.point_data["colours"] = colours
     body.point_data.active_normals = surface.normals
@@ -163,7 +161,7 @@ def draw(
             position = mesh.points + displacement + nearer
             plotter.add_mesh(lines(position, edges), color=INK, opacity=0.28, **thin)
             plotter.add_mesh(lines(position, mesh.boundary_edges), color=INK, **thick)
-            plotter.add_mesh(lines(mesh.points, edges), color=PALE, opacity=0.5, **thin)
+            plotter.add_mesh(lines(mesh.points + behind, edges), color=PALE, opacity=0.5, **thin)
             plotter.add_mesh(lines(mesh.points, mesh.boundary_edges), color=PALE, **thick)
             if arrow is not None:
                 length = float(np.linalg.norm(arrow[1] - arrow[0]))

@@ -94,9 +94,7 @@ def _step(path: Path, number: int) -> Step:
     return path.steps[number]
 
 
-def _values(
-    path: Path, step: Step, output: Output, component: int | None, tessellation: Tessellation
-) -> FloatArray:
+def _values(path: Path, step: Step, output: Output, component: int | None, tessellation: Tessellation) -> FloatArray:
     """The scalar shown, SI, at the points of the tessellation."""
     values = np.asarray(output.evaluate(path.discretisation, step.state), dtype=float)
     values = tessellation.at_points(values) if output.where == "point" else tessellation.on_elements(values)
@@ -131,9 +129,7 @@ def _label_arrow(axes: Any, ends: FloatArray) -> None:
     tail, head = ends
     beyond = 0.04 * (head - tail) / max(float(np.linalg.norm(head - tail)), 1e-9)
     place = {"ha": "center", "va": "center", "annotation_clip": False}
-    axes.annotate(
-        r"$B^\mathrm{ext}$", head + beyond, xycoords="axes fraction", color=ACCENT, fontsize=16, **place
-    )
+    axes.annotate(r"$B^\mathrm{ext}$", head + beyond, xycoords="axes fraction", color=ACCENT, fontsize=16, **place)
 
 
 def _triad(axes: Any, view: FloatArray) -> None:
@@ -144,6 +140,4 @@ def _triad(axes: Any, view: FloatArray) -> None:
         tip = length * view[:2, i]
         axes.annotate("", origin + tip, origin, "axes points", "axes points", arrowprops=line)
         place = origin + tip * (1 + beyond / max(float(np.linalg.norm(tip)), 1e-9))
-        axes.annotate(
-            f"$X_{i + 1}$", place, None, "axes points", ha="center", va="center", fontsize=13, color=GREY
-        )
+        axes.annotate(f"$X_{i + 1}$", place, None, "axes points", ha="center", va="center", fontsize=13, color=GREY)

@@ -18,7 +18,7 @@ INK = "#1a1f26"
 GREY = "#4b5563"
 PALE = "#8b95a1"
 ACCENT = "#c2410c"
-COLOURS = ("#1d4ed8", ACCENT, "#15803d", "#7e22ce", "#b45309", "#0e7490", "#be185d", "#4d7c0f")
+COLOURS = ("#1d4ed8", ACCENT, "#15803d", "#7e22ce", "#0891b2", "#be185d", "#65a30d", "#4b5563")
 TEXT: dict[str, Any] = {"fontsize": 15, "color": INK}
 TICKS: dict[str, Any] = {"labelsize": 13, "colors": GREY}
 

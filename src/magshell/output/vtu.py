@@ -154,8 +154,7 @@ def _vtu(grid: Any) -> bytes:
 
 def _pvd(written: list[tuple[float, str]]) -> bytes:
     lines = [
-        f'    <DataSet timestep="{load_factor!r}" part="0" file={quoteattr(name)}/>'
-        for load_factor, name in written
+        f'    <DataSet timestep="{load_factor!r}" part="0" file={quoteattr(name)}/>' for load_factor, name in written
     ]
     return "\n".join(
         [
