@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from magshell import mesh
+    from magshell import mesh, problem
     from magshell.errors import InputError, MeshError, SolveError
     from magshell.magnetics import (
         DeformationGradientEnergy,
@@ -27,13 +27,18 @@ __version__ = "0.1.0"
 
 _HOME = {
     "magshell.errors": ("InputError", "MeshError", "SolveError"),
-    "magshell.magnetics": ("DeformationGradientEnergy", "MicroRotationEnergy", "MicropolarCouple", "UniformField"),
+    "magshell.magnetics": (
+        "DeformationGradientEnergy",
+        "MicroRotationEnergy",
+        "MicropolarCouple",
+        "UniformField",
+    ),
     "magshell.materials": ("MicropolarMooneyRivlin", "MicropolarNeoHookean"),
     "magshell.model": ("Model", "Shell"),
     "magshell.solver": ("Observer", "Path", "Settings", "Step", "solve"),
     "magshell.supports": ("Clamp", "Prescribe", "SimpleSupport", "SymmetryPlane"),
 }
-_MODULES = {"mesh": "magshell.mesh", "remanence": "magshell.magnetics.remanence"}
+_MODULES = {"mesh": "magshell.mesh", "problem": "magshell.problem", "remanence": "magshell.magnetics.remanence"}
 _NAMES = {name: home for home, names in _HOME.items() for name in names}
 
 __all__ = [
@@ -57,6 +62,7 @@ __all__ = [
     "SymmetryPlane",
     "UniformField",
     "mesh",
+    "problem",
     "remanence",
     "solve",
 ]

@@ -10,20 +10,21 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import scipy.sparse as sp
 
+from magshell.arrays import FloatArray, IntArray
 from magshell.materials.law import strain_energy
 from magshell.model import Model
 from magshell.shell import loops, rotation
 from magshell.shell.evaluation import evaluate
-from magshell.shell.geometry import section_geometry
+from magshell.shell.geometry import section_geometry, unit_forces
 from magshell.shell.interpolation import surface_rule
 from magshell.shell.shape_functions import serendipity
 from magshell.shell.state import State
-from magshell.typing import FloatArray, IntArray
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh
 
 LEVELS = 2
+ROUND_OFF = 8.0 * np.finfo(float).eps
 KINDS = ("u", "w", "phi", "omega", "alpha")
 _COLUMNS = (slice(0, 3), slice(3, 6), slice(6, 7), slice(7, 10))
 Ordering = Callable[[sp.csr_array], IntArray]
@@ -103,6 +104,7 @@ class Discretisation:
         self.modes = geometry.enhancement.shape[2]
         self.rest = self.body.shape.rest.shape[1]
         self._number_equations(ordering)
+        self._noise = ROUND_OFF * unit_forces(geometry, shape) * model.shell.material.shear_modulus
         elements, values = len(mesh.elements), 3 * mesh.elements.shape[1] + 7 * self.rest
         self._out = loops.Assembled(
             np.zeros(self.pattern.indices.size),
@@ -235,15 +237,17 @@ class Discretisation:
         return Assembly(matrix, right_side, out.residual.copy(), self._relative_residual())
 
     def _relative_residual(self) -> dict[str, float]:
-        """Norms by kind; α has the unit of w (both work on directors) and is measured against the same forces."""
+        """Norms by kind above their round-off, over the elements' forces of that kind.
+
+        α has the unit of w (both work on directors) and is measured against the same forces.
+        """
         residual = np.where(self.free, self._out.residual, 0.0)
         norms = [float(np.linalg.norm(residual[:, columns])) for columns in _COLUMNS]
         norms.append(float(np.sqrt(self._out.enhancement_residual[0])))
-        scales = np.sqrt(self._out.scale.sum(axis=1)).tolist()
-        scales.append(scales[1])
-        return {
-            kind: norm / scale if scale > 0.0 else norm for kind, norm, scale in zip(KINDS, norms, scales, strict=True)
-        }
+        scales = np.sqrt(self._out.scale.sum(axis=1))
+        above = np.maximum(np.array(norms) - self._noise[[0, 1, 2, 3, 1]], 0.0)
+        relative = np.divide(above, scales[[0, 1, 2, 3, 1]], out=above.copy(), where=above > 0.0)
+        return dict(zip(KINDS, relative.tolist(), strict=True))
 
     def expand(self, solution: FloatArray, imposed: FloatArray | None = None) -> FloatArray:
         """Nodal increment (nodes, 10) in global axes of free unknowns (dofs,) and imposed components."""

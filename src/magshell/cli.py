@@ -121,13 +121,9 @@ def _parser() -> argparse.ArgumentParser:
         )
         one.set_defaults(command=command)
         if name != "examples":
-            one.add_argument(
-                "problem", metavar="FILE|NAME", help="a problem file (.toml) or a built-in problem"
-            )
+            one.add_argument("problem", metavar="FILE|NAME", help="a problem file (.toml) or a built-in problem")
         if name == "run":
-            one.add_argument(
-                "--out", metavar="DIR", required=True, help="folder for the results, made if missing"
-            )
+            one.add_argument("--out", metavar="DIR", required=True, help="folder for the results, made if missing")
         if name == "examples":
             one.add_argument("--copy", metavar="NAME", help="write the problem file of NAME to DEST")
             one.add_argument("dest", metavar="DEST", nargs="?", help="a file or folder; here, without it")
@@ -219,9 +215,7 @@ def _examples(given: argparse.Namespace) -> int:
 
     console = _console()
     if given.copy is None and given.dest is not None:
-        raise InputError(
-            f"examples: '{given.dest}' is where to copy to, but --copy NAME says nothing to copy"
-        )
+        raise InputError(f"examples: '{given.dest}' is where to copy to, but --copy NAME says nothing to copy")
     if given.copy is None:
         width = max(map(len, examples.names()))
         for name in examples.names():

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from magshell.arrays import FloatArray
 from magshell.errors import InputError
 from magshell.magnetics.field import UniformField
 from magshell.magnetics.remanence import Remanence
@@ -18,7 +19,6 @@ from magshell.mesh import Mesh
 from magshell.rigid import check_supported
 from magshell.shell.normals import nodal_normals
 from magshell.supports import Constraints, Support, resolve
-from magshell.typing import FloatArray
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.mesh import Mesh
 from magshell.supports import Constraints
-from magshell.typing import FloatArray, IntArray
 
 
 def free_motions(points: FloatArray, normals: FloatArray, nodes: IntArray, constraints: Constraints) -> FloatArray:

@@ -9,9 +9,9 @@ from typing import NamedTuple, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
+from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError, suggest
 from magshell.mesh import Mesh
-from magshell.typing import FloatArray, IntArray
 
 FIELDS = ("u", "w", "phi", "omega")
 AXES = np.eye(3)
@@ -232,7 +232,7 @@ def _orthonormal(node: int, field: str, wanted: list[tuple[FloatArray, float, st
         elif abs(left) > 1e-9 * max(abs(wanted_value), *(abs(held) for held in values)):
             others = sorted({other for _, _, other in wanted} - {group})
             raise InputError(
-                f"supports contradict each other at node {node}: '{group}' wants another {field} than "
+                f"supports: they contradict each other at node {node}: '{group}' wants another {field} than "
                 + (f"'{others[0]}'" if others else "an earlier support on the same group")
             )
     return np.array(base), np.array(values)

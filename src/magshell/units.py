@@ -109,9 +109,7 @@ def parse(value: object, dimension: Dimension, unit: str | None = None) -> float
         raise InputError(f"{quoted(value)} {_wrong_unit(found, dimension)}")
     with localcontext() as context:
         context.prec = 36
-        result = float(
-            number * (dimension.units[found] / dimension.units[unit or next(iter(dimension.units))])
-        )
+        result = float(number * (dimension.units[found] / dimension.units[unit or next(iter(dimension.units))]))
     if not math.isfinite(result):
         raise InputError(f"{quoted(value)} is not a finite number")
     return result

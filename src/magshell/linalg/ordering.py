@@ -7,7 +7,7 @@ import logging
 import numpy as np
 import scipy.sparse as sp
 
-from magshell.typing import IntArray
+from magshell.arrays import IntArray
 
 logger = logging.getLogger(__name__)
 
@@ -30,5 +30,5 @@ def nested_dissection(graph: sp.csr_array) -> IntArray:
     if row.size == 0:
         return np.arange(graph.shape[0])
     adjacency = sp.csr_array((np.ones(row.size, dtype=np.int8), (row, column)), shape=graph.shape)
-    order, _ = pymetis.nested_dissection(xadj=adjacency.indptr, adjncy=adjacency.indices)
+    order, _ = pymetis.nested_dissection(pymetis.CSRAdjacency(adjacency.indptr, adjacency.indices))
     return np.asarray(order, dtype=np.int64)

@@ -11,8 +11,8 @@ from typing import Any, Protocol
 import numpy as np
 import scipy.sparse as sp
 
+from magshell.arrays import FloatArray
 from magshell.errors import InputError, suggest
-from magshell.typing import FloatArray
 
 
 class SingularMatrix(ArithmeticError):

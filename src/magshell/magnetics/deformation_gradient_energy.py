@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from magshell.arrays import FloatArray
 from magshell.magnetics.law import coupling_law
-from magshell.typing import FloatArray
 
 
 def _energy(coupling: DeformationGradientEnergy, m: FloatArray, n: FloatArray, B: FloatArray) -> float:

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
+from magshell.arrays import FloatArray
 from magshell.errors import InputError
-from magshell.typing import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

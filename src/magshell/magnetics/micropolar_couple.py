@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from magshell.arrays import FloatArray
 from magshell.magnetics.law import coupling_law
-from magshell.typing import FloatArray
 
 
 def _forces(

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
+from magshell.arrays import FloatArray
 from magshell.errors import InputError
-from magshell.typing import FloatArray
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh

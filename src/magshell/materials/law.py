@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol, TypeVar
 
-from magshell.typing import FloatArray
+from magshell.arrays import FloatArray
 
 
 class Material(Protocol):

@@ -21,9 +21,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from magshell.arrays import FloatArray
 from magshell.materials.law import material_law
 from magshell.materials.tensors import inverse_transpose
-from magshell.typing import FloatArray
 
 
 def _energy(material: MicropolarMooneyRivlin, U: FloatArray) -> float:

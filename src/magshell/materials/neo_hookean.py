@@ -22,9 +22,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from magshell.arrays import FloatArray
 from magshell.materials.law import Material, material_law
 from magshell.materials.tensors import inverse_transpose
-from magshell.typing import FloatArray
 
 
 def _energy(material: Material, U: FloatArray) -> float:

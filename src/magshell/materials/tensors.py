@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from magshell.typing import FloatArray
+from magshell.arrays import FloatArray
 
 
 def inverse_transpose(U: FloatArray) -> tuple[FloatArray, float]:

@@ -8,8 +8,8 @@ from numbers import Integral, Real
 
 import numpy as np
 
+from magshell.arrays import FloatArray
 from magshell.errors import InputError
-from magshell.typing import FloatArray
 
 WIDEST = 120.0
 """Degrees an element may span: a quarter turn is usual, and a turn of two elements would fold onto itself."""
@@ -25,13 +25,9 @@ def positive(generator: str, name: str, value: float) -> float:
 def divisions(generator: str, value: Sequence[int], name: str = "elements") -> tuple[int, int]:
     """Two numbers of elements, each at least 1."""
     numbers = tuple(value) if isinstance(value, Iterable) else ()
-    if len(numbers) == 2 and all(
-        isinstance(n, Integral) and not isinstance(n, bool) and n >= 1 for n in numbers
-    ):
+    if len(numbers) == 2 and all(isinstance(n, Integral) and not isinstance(n, bool) and n >= 1 for n in numbers):
         return int(numbers[0]), int(numbers[1])
-    raise InputError(
-        f"{generator}: {name} = {value!r} is not allowed; it must be two whole numbers, each at least 1."
-    )
+    raise InputError(f"{generator}: {name} = {value!r} is not allowed; it must be two whole numbers, each at least 1.")
 
 
 def angles(generator: str, name: str, value: Sequence[float], elements: int) -> tuple[float, float]:
@@ -40,9 +36,7 @@ def angles(generator: str, name: str, value: Sequence[float], elements: int) -> 
     if start >= stop:
         raise InputError(f"{generator}: {name} = {value!r} is not allowed; the start must be below the stop.")
     if stop - start > 360 and not whole_turn(start, stop):
-        raise InputError(
-            f"{generator}: {name} = {value!r} spans {stop - start:g} degrees; at most 360 are allowed."
-        )
+        raise InputError(f"{generator}: {name} = {value!r} spans {stop - start:g} degrees; at most 360 are allowed.")
     if stop - start > WIDEST * elements:
         raise InputError(
             f"{generator}: elements = {elements} over {name} = {value!r} makes elements of "
@@ -64,9 +58,7 @@ def number_pair(generator: str, name: str, value: Sequence[float]) -> tuple[floa
     except (TypeError, ValueError):
         start = stop = math.nan
     if not (math.isfinite(start) and math.isfinite(stop)):
-        raise InputError(
-            f"{generator}: {name} = {value!r} is not allowed; it must be two numbers, in degrees."
-        )
+        raise InputError(f"{generator}: {name} = {value!r} is not allowed; it must be two numbers, in degrees.")
     return start, stop
 
 
@@ -77,7 +69,5 @@ def direction(generator: str, name: str, value: Sequence[float]) -> FloatArray:
     except (TypeError, ValueError):
         vector = np.zeros(0)
     if vector.shape != (3,) or not np.isfinite(vector).all() or not vector.any():
-        raise InputError(
-            f"{generator}: {name} = {value!r} is not allowed; it must be three numbers, not all zero."
-        )
+        raise InputError(f"{generator}: {name} = {value!r} is not allowed; it must be three numbers, not all zero.")
     return vector / np.linalg.norm(vector)

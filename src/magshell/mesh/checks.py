@@ -7,10 +7,10 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.errors import MeshError
 from magshell.mesh.edges import Edges, edge_keys
 from magshell.mesh.wording import COUNTING, further, listing, place
-from magshell.typing import AnyArray, FloatArray, IntArray
 
 Array = TypeVar("Array", bound=AnyArray)
 
@@ -57,16 +57,14 @@ def check_numbers(points: FloatArray, elements: IntArray) -> None:
     bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
     if bad.size:
         raise MeshError(
-            f"Node {bad[0]} has the position {place(points[bad[0]])}: coordinates must be finite."
-            + further(bad.size)
+            f"Node {bad[0]} has the position {place(points[bad[0]])}: coordinates must be finite." + further(bad.size)
         )
     bad = np.flatnonzero(((elements < 0) | (elements >= len(points))).any(axis=1))
     if bad.size:
         row = elements[bad[0]]
         wrong = row[(row < 0) | (row >= len(points))][0]
         raise MeshError(
-            f"Element {bad[0]} has node {wrong}, but nodes are numbered 0 to {len(points) - 1}."
-            + further(bad.size)
+            f"Element {bad[0]} has node {wrong}, but nodes are numbered 0 to {len(points) - 1}." + further(bad.size)
         )
     ordered = np.sort(elements, axis=1)
     bad = np.flatnonzero((ordered[:, 1:] == ordered[:, :-1]).any(axis=1))
@@ -79,8 +77,7 @@ def check_numbers(points: FloatArray, elements: IntArray) -> None:
     unused = np.flatnonzero(np.bincount(elements.ravel(), minlength=len(points)) == 0)
     if unused.size:
         raise MeshError(
-            f"No element has node {listing(unused)}: remove unused nodes, the first is at "
-            f"{place(points[unused[0]])}."
+            f"No element has node {listing(unused)}: remove unused nodes, the first is at {place(points[unused[0]])}."
         )
     _check_duplicates(elements)
 
@@ -106,8 +103,7 @@ def check_connectivity(points: FloatArray, elements: IntArray, edges: Edges) -> 
         one, other = edges.sides[edges.first_side[crowded[0]], :2]
         raise MeshError(
             f"Elements {listing(owners)} share the edge between nodes {one} and {other} at "
-            f"{place(points[one])}: a shell surface has at most two elements on an edge."
-            + further(crowded.size)
+            f"{place(points[one])}: a shell surface has at most two elements on an edge." + further(crowded.size)
         )
     partner = edges.first_side[edges.edge_of_side]
     odd = np.flatnonzero(edges.sides[:, 2] != edges.sides[partner, 2])
@@ -127,17 +123,14 @@ def check_connectivity(points: FloatArray, elements: IntArray, edges: Edges) -> 
             f"Elements {one // 4} and {other // 4} have node {edges.sides[one, 2]} in the middle of two "
             f"different edges, at {place(points[edges.sides[one, 2]])}." + further(twice.size)
         )
-    same = np.flatnonzero(
-        (edges.sides[:, 0] == edges.sides[partner, 0]) & (partner != np.arange(len(partner)))
-    )
+    same = np.flatnonzero((edges.sides[:, 0] == edges.sides[partner, 0]) & (partner != np.arange(len(partner))))
     if same.size:
         one, other = partner[same[0]] // 4, same[0] // 4
         ends = edges.sides[same[0]]
         raise MeshError(
             f"Elements {one} and {other} disagree about which side is up: both walk their common edge from "
             f"node {ends[0]} to node {ends[1]}, at {place(points[ends[0]])}. Corners must run "
-            f"counter-clockwise seen from one and the same side of the whole surface {COUNTING}."
-            + further(same.size)
+            f"counter-clockwise seen from one and the same side of the whole surface {COUNTING}." + further(same.size)
         )
 
 
@@ -173,14 +166,8 @@ def check_groups(
             name: _numbers(values, f"Element group '{name}'", "element", len(elements))
             for name, values in element_groups.items()
         },
-        {
-            name: _edge_rows(values, f"Edge group '{name}'", len(points), edges)
-            for name, values in edge_groups.items()
-        },
-        {
-            name: _numbers(values, f"Node group '{name}'", "node", len(points))
-            for name, values in node_groups.items()
-        },
+        {name: _edge_rows(values, f"Edge group '{name}'", len(points), edges) for name, values in edge_groups.items()},
+        {name: _numbers(values, f"Node group '{name}'", "node", len(points)) for name, values in node_groups.items()},
     )
 
 

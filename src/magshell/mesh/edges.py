@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from magshell.typing import IntArray
+from magshell.arrays import IntArray
 
 SIDES = np.array([[0, 1, 4], [1, 2, 5], [2, 3, 6], [3, 0, 7]])
 """Local node numbers (end, end, middle) of the four sides, walked counter-clockwise."""

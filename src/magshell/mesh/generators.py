@@ -97,9 +97,7 @@ def cylinder(
     return Mesh(points, pattern.elements, edge_groups=pattern.sides(names))
 
 
-def sphere_patch(
-    radius: float, polar: Sequence[float], azimuth: Sequence[float], elements: Sequence[int]
-) -> Mesh:
+def sphere_patch(radius: float, polar: Sequence[float], azimuth: Sequence[float], elements: Sequence[int]) -> Mesh:
     """Part of a sphere about the origin between two latitudes and two meridians, with the normal outward.
 
     Parameters
@@ -144,9 +142,7 @@ def sphere_patch(
     pattern = grid(along, around, closed=1 if whole else None)
     theta = np.radians(top + (bottom - top) * pattern.parameters[:, 0])
     phi = np.radians(left + (right - left) * pattern.parameters[:, 1])
-    points = radius * np.stack(
-        [np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=1
-    )
+    points = radius * np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=1)
     names = {"top": (0, 0.0), "bottom": (0, 1.0)}
     if not whole:
         names |= {"left": (1, 0.0), "right": (1, 1.0)}

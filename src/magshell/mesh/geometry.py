@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from magshell.arrays import FloatArray, IntArray
 from magshell.errors import MeshError
 from magshell.mesh.edges import SIDES
 from magshell.mesh.wording import COUNTING, further, place
-from magshell.typing import FloatArray, IntArray
 
 COINCIDENT = 1e-6
 """Positions closer than this fraction of the size of the mesh are the same."""
@@ -61,8 +61,7 @@ def check_shapes(points: FloatArray, elements: IntArray, size: float) -> None:
         raise MeshError(
             f"Element {bad[0]} is turned inside out at corner {corner[0] + 1}, node {node} at "
             f"{place(points[node])}: its Jacobian there is {jacobians[bad[0], corner[0]]:.3g} (scaled, must "
-            f"be positive). The angle inside the corner must be less than 180 degrees {COUNTING}."
-            + further(bad.size)
+            f"be positive). The angle inside the corner must be less than 180 degrees {COUNTING}." + further(bad.size)
         )
 
 
@@ -105,6 +104,5 @@ def _check_middles(points: FloatArray, elements: IntArray) -> None:
         raise MeshError(
             f"Element {bad[0]}: node {node} at {place(points[node])} belongs in the middle between nodes "
             f"{ends[0]} and {ends[1]} but lies at {0.5 + at:.3g} of the way and {aside:.3g} of the edge's "
-            "length aside; it must lie between 0.25 and 0.75 of the way and at most 0.5 aside."
-            + further(bad.size)
+            "length aside; it must lie between 0.25 and 0.75 of the way and at most 0.5 aside." + further(bad.size)
         )

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from magshell.arrays import FloatArray, IntArray
 from magshell.mesh.edges import find_edges
-from magshell.typing import FloatArray, IntArray
 
 
 class Grid(NamedTuple):
@@ -23,10 +23,7 @@ class Grid(NamedTuple):
         """Boundary edges (k, 3) by name; `where` has the parameter, 0 for s or 1 for t, and its value."""
         edges = find_edges(self.elements)
         free = edges.sides[edges.boundary]
-        return {
-            name: free[(self.parameters[free, axis] == value).all(axis=1)]
-            for name, (axis, value) in where.items()
-        }
+        return {name: free[(self.parameters[free, axis] == value).all(axis=1)] for name, (axis, value) in where.items()}
 
 
 def grid(along_s: int, along_t: int, closed: int | None = None) -> Grid:

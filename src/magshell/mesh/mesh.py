@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError, suggest
 from magshell.mesh.checks import (
     check_connectivity,
@@ -23,7 +24,6 @@ from magshell.mesh.edges import Edges, find_edges
 from magshell.mesh.geometry import COINCIDENT, check_shapes
 from magshell.mesh.unmatched import check_unmatched
 from magshell.mesh.wording import place
-from magshell.typing import FloatArray, IntArray
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -115,9 +115,7 @@ class Mesh:
 
         count, nodes = self.elements.shape[0], len(self.points)
         rows = np.repeat(np.arange(count), 8)
-        graph = coo_matrix(
-            (np.ones(8 * count), (rows, count + self.elements.ravel())), shape=(count + nodes,) * 2
-        )
+        graph = coo_matrix((np.ones(8 * count), (rows, count + self.elements.ravel())), shape=(count + nodes,) * 2)
         _, labels = connected_components(graph, directed=False)
         order = np.argsort(labels[:count], kind="stable")
         starts = np.flatnonzero(np.diff(labels[order])) + 1
@@ -134,11 +132,7 @@ class Mesh:
         if name in self.element_groups:
             return self.element_groups[name]
         kind = self._kinds.get(name)
-        fault = (
-            f"'{name}' is a group of {kind}s, not of elements"
-            if kind
-            else f"There is no element group '{name}'"
-        )
+        fault = f"'{name}' is a group of {kind}s, not of elements" if kind else f"There is no element group '{name}'"
         raise InputError(f"{fault}. {suggest(name, self.element_groups)}")
 
     def nodes_of(self, name: str) -> IntArray:

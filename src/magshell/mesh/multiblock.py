@@ -8,13 +8,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError, MeshError, suggest
 from magshell.mesh.arguments import divisions
 from magshell.mesh.geometry import COINCIDENT, FLAT_CORNER, unit
 from magshell.mesh.grid import grid
 from magshell.mesh.mesh import Mesh
 from magshell.mesh.wording import place
-from magshell.typing import FloatArray, IntArray
 
 
 class _Block(NamedTuple):
@@ -50,9 +50,7 @@ def blocks(corners: Mapping[str, Any], elements: Mapping[str, Sequence[int]] | S
         names the blocks.
     """
     if not isinstance(corners, Mapping) or not corners:
-        raise InputError(
-            f"blocks: corners = {corners!r} is not allowed; it must map names to four corners each."
-        )
+        raise InputError(f"blocks: corners = {corners!r} is not allowed; it must map names to four corners each.")
     every = _read(corners, elements)
     stacked = np.concatenate([block.corners for block in every])
     tolerance = COINCIDENT * float(np.linalg.norm(np.ptp(stacked, axis=0)))
@@ -81,15 +79,11 @@ def _read(corners: Mapping[str, Any], elements: Mapping[str, Sequence[int]] | Se
     numbers = elements if isinstance(elements, Mapping) else dict.fromkeys(corners, elements)
     for name in numbers:
         if name not in corners:
-            raise InputError(
-                f"blocks: elements are given for '{name}', which is not a block. {suggest(name, corners)}"
-            )
+            raise InputError(f"blocks: elements are given for '{name}', which is not a block. {suggest(name, corners)}")
     every = []
     for name, given in corners.items():
         if name not in numbers:
-            raise InputError(
-                f"blocks: no number of elements is given for block '{name}'. {suggest(name, numbers)}"
-            )
+            raise InputError(f"blocks: no number of elements is given for block '{name}'. {suggest(name, numbers)}")
         try:
             array = np.array(given, dtype=np.float64)
         except (TypeError, ValueError):
@@ -136,9 +130,7 @@ def _check_sides(every: list[_Block], tolerance: float) -> None:
         start, end = one.corners[i], one.corners[(i + 1) % 4]
         where = f"the side from {place(start)} to {place(end)}"
         if len(found) > 2:
-            raise MeshError(
-                f"Blocks {names} share {where}: a shell surface has at most two blocks on a side."
-            )
+            raise MeshError(f"Blocks {names} share {where}: a shell surface has at most two blocks on a side.")
         if len(found) == 2 and np.linalg.norm(other.corners[j] - start) <= tolerance:
             raise MeshError(
                 f"Blocks {names} disagree about which side is up: both walk {where}. Reverse the corners of "

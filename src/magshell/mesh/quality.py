@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from magshell.arrays import FloatArray
 from magshell.mesh.geometry import chord_lengths, diagonal_normals, scaled_jacobians, unit
 from magshell.mesh.mesh import Mesh
-from magshell.typing import FloatArray
 
 
 class Quality(NamedTuple):

@@ -6,11 +6,11 @@ from itertools import chain
 
 import numpy as np
 
+from magshell.arrays import FloatArray, IntArray
 from magshell.errors import MeshError
 from magshell.mesh.edges import Edges
 from magshell.mesh.geometry import COINCIDENT, chord_lengths
 from magshell.mesh.wording import further, place
-from magshell.typing import FloatArray, IntArray
 
 ON_EDGE = 1e-3
 """A node closer to an edge than this fraction of its element's shortest side lies on it.
@@ -67,8 +67,6 @@ def _distances(points: FloatArray, start: FloatArray, end: FloatArray, middle: F
     for _ in range(8):
         away = points - (bend + at * half + at**2 * mean)
         tangent = half + 2 * at * mean
-        at = (
-            at + (away * tangent).sum(axis=1, keepdims=True) / (tangent**2).sum(axis=1, keepdims=True)
-        ).clip(-1, 1)
+        at = (at + (away * tangent).sum(axis=1, keepdims=True) / (tangent**2).sum(axis=1, keepdims=True)).clip(-1, 1)
     result: FloatArray = np.linalg.norm(points - (bend + at * half + at**2 * mean), axis=1)
     return result

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from magshell.typing import FloatArray
+from magshell.arrays import FloatArray
 
 COUNTING = "(elements and nodes are counted from 0, the corners of an element from 1)"
 

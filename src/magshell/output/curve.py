@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from magshell.arrays import FloatArray
 from magshell.output.style import COLOURS, DPI, TEXT, TICKS, deliver
-from magshell.typing import FloatArray
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

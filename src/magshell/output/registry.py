@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from magshell.arrays import AnyArray
 from magshell.errors import InputError, suggest
-from magshell.typing import AnyArray
 
 if TYPE_CHECKING:
     from magshell.assembly import Discretisation

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from magshell.arrays import AnyArray, FloatArray
 from magshell.output.rendering import require_rendering
 from magshell.output.style import ACCENT, INK, PALE
 from magshell.output.tessellation import Tessellation, element_edges
-from magshell.typing import AnyArray, FloatArray
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError
 from magshell.output.registry import Output, find
 from magshell.output.scene import draw
 from magshell.output.style import ACCENT, DPI, GREY, TEXT, TICKS, deliver
 from magshell.output.tessellation import Tessellation
-from magshell.typing import AnyArray, FloatArray
 
 if TYPE_CHECKING:
     from PIL.Image import Image

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from magshell.arrays import FloatArray, IntArray
 from magshell.shell.shape_functions import serendipity
-from magshell.typing import FloatArray, IntArray
 
 SIDES = np.array([[0, 4, 1], [1, 5, 2], [2, 6, 3], [3, 7, 0]])
 

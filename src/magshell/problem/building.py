@@ -148,9 +148,7 @@ def _material(table: schema.Material, thickness: float) -> Material:
         "length_scale": table.length_scale or thickness / 10.0,
     }
     if isinstance(table, schema.MooneyRivlin):
-        return materials.MicropolarMooneyRivlin(
-            **parameters, second_invariant_share=table.second_invariant_share
-        )
+        return materials.MicropolarMooneyRivlin(**parameters, second_invariant_share=table.second_invariant_share)
     return materials.MicropolarNeoHookean(**parameters)
 
 
@@ -162,9 +160,7 @@ def _remanence(entries: tuple[schema.Remanence, ...], mesh: Mesh) -> Remanence:
     for number, entry in enumerate(entries):
         with _at(f"remanence[{number}].group"):
             if entry.group is None:
-                raise InputError(
-                    f"is missing; with several entries each says its element groups {_listed(mesh)}"
-                )
+                raise InputError(f"is missing; with several entries each says its element groups {_listed(mesh)}")
             for group in entry.group:
                 for element in mesh.elements_of(group).tolist():
                     if element in owner:

@@ -47,9 +47,7 @@ def read(source: str | os.PathLike[str]) -> tuple[str, ProblemFile]:
 def parse(text: str, name: str) -> dict[str, Any]:
     """TOML to plain data; a syntax error names line and column."""
     if not text.strip():
-        raise InputError(
-            f"{name}: the file is empty. See a problem that works with: magshell examples --copy strip-10"
-        )
+        raise InputError(f"{name}: the file is empty. See a problem that works with: magshell examples --copy strip-10")
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -108,9 +106,7 @@ def _text(source: str | os.PathLike[str]) -> tuple[str, str]:
 
 def _not_found(path: pathlib.Path) -> str:
     here = [file.name for file in path.parent.glob("*.toml")] if path.parent.is_dir() else []
-    return (
-        f"{path}: there is no such file or built-in problem. {suggest(path.name, [*here, *examples.names()])}"
-    )
+    return f"{path}: there is no such file or built-in problem. {suggest(path.name, [*here, *examples.names()])}"
 
 
 def _explained(error: str) -> str:
@@ -160,9 +156,7 @@ def _located(details: Mapping[str, Any]) -> tuple[str, str]:
             message = "is not a table of keys and values"
         case "tuple_type" | "list_type":
             message = (
-                "is not a list"
-                if where[-1] not in ProblemFile.chosen_by
-                else f"is not a list: write [[{where[-1]}]]"
+                "is not a list" if where[-1] not in ProblemFile.chosen_by else f"is not a list: write [[{where[-1]}]]"
             )
         case "string_type":
             message = f"{quoted(details['input'])} is not text; write it in quotes"

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from magshell.arrays import FloatArray, IntArray
 from magshell.mesh import Mesh
 from magshell.mesh.quality import worst
 from magshell.problem import schema
 from magshell.problem.building import Problem
 from magshell.problem.fields import DIMENSION_OF_FIELD
-from magshell.typing import FloatArray, IntArray
 from magshell.units import FLUX_DENSITY, LENGTH, STRESS, Dimension, show
 
 VACUUM_PERMEABILITY = 4e-7 * math.pi

@@ -252,9 +252,7 @@ class PrescribeTable(_Support):
     @model_validator(mode="after")
     def _phi_is_a_scalar(self) -> PrescribeTable:
         if self.field == "phi" and self.component is not None:
-            raise key_error(
-                "component", "makes no sense with the field phi, which has only one; leave it out"
-            )
+            raise key_error("component", "makes no sense with the field phi, which has only one; leave it out")
         return self
 
 
@@ -294,8 +292,6 @@ class ProblemFile(Table):
     material: Annotated[Material, Field(discriminator="law")]
     remanence: tuple[Annotated[Remanence, Field(discriminator="kind")], ...] = ()
     field: FieldTable
-    supports: Annotated[
-        tuple[Annotated[Support, Field(discriminator="kind")], ...], BeforeValidator(f.not_empty)
-    ]
+    supports: Annotated[tuple[Annotated[Support, Field(discriminator="kind")], ...], BeforeValidator(f.not_empty)]
     probes: dict[f.ProbeName, f.Position] = {}
     solver: SolverTable = SolverTable()

@@ -9,10 +9,10 @@ The last term comes from κ = 2 vec(q̂* q̂,α) / n²: its bilinear numerator, 
 
 from __future__ import annotations
 
+from magshell.arrays import FloatArray
 from magshell.compiled import inline
 from magshell.shell.point import Q1, Q, Workspace
 from magshell.shell.rotation import wryness_maps
-from magshell.typing import FloatArray
 
 
 @inline

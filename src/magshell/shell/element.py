@@ -19,10 +19,10 @@ q (4 × 4) or ϑ (3 × 4), α (3 × 2).
 
 from __future__ import annotations
 
+from magshell.arrays import FloatArray, IntArray
 from magshell.compiled import inline
 from magshell.shell.interpolation import Interpolation
 from magshell.shell.point import ENHANCED, PHI, Q1, U1, W1, Q, W
-from magshell.typing import FloatArray, IntArray
 
 
 @inline

@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from magshell.arrays import FloatArray
 from magshell.shell import rotation
 from magshell.shell.loops import Body
 from magshell.shell.state import State
-from magshell.typing import FloatArray
 
 
 class PointFields(NamedTuple):

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from magshell.arrays import FloatArray
 from magshell.shell.interpolation import Interpolation
 from magshell.shell.shape_functions import serendipity
-from magshell.typing import FloatArray
 
 
 class SectionGeometry(NamedTuple):
@@ -101,3 +101,18 @@ def section_geometry(
     return SectionGeometry(
         *(np.ascontiguousarray(a) for a in (A, D[:, :, 0], dD, director, z, G, volume, metric, enhancement))
     )
+
+
+def unit_forces(geometry: SectionGeometry, shape: Interpolation) -> FloatArray:
+    """Nodal forces of a stress of 1 Pa whose contributions do not cancel: norms over all elements for u, w, φ and ω.
+
+    A stress is known to round-off times the modulus, so this times both is how small a residual can be told from zero.
+    """
+    volume, z = geometry.volume, np.abs(geometry.z)
+    leg = np.linalg.norm(geometry.G, axis=-1)
+    u = np.einsum("pan,epka,epk->en", np.abs(shape.du), leg[..., :2], volume)
+    w = np.einsum("epan,epka,k,epk->en", np.abs(geometry.director[:, :, 1:]), leg[..., :2], z, volume)
+    w += np.einsum("epn,epk,epk->en", np.abs(geometry.director[:, :, 0]), leg[..., 2], volume)
+    φ = 2.0 * np.einsum("pn,epk,k,epk->en", np.abs(shape.rest), leg[..., 2], z, volume)
+    ω = np.einsum("pn,epk->en", np.abs(shape.rest), volume)
+    return np.array([np.linalg.norm(forces) for forces in (u, w, φ, ω)])

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from magshell.arrays import FloatArray
 from magshell.shell.shape_functions import bilinear, gauss_legendre, serendipity
-from magshell.typing import FloatArray
 
 
 class Interpolation(NamedTuple):

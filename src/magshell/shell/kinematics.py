@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from magshell.arrays import FloatArray
 from magshell.compiled import inline
 from magshell.shell.geometry import SectionGeometry
 from magshell.shell.point import ENHANCED, PHI, U1, W1, W
-from magshell.typing import FloatArray
 
 
 @inline

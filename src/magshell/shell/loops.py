@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from magshell.arrays import FloatArray, IntArray
 from magshell.compiled import inline, jit
 from magshell.magnetics.law import Coupling
 from magshell.materials.law import Material
@@ -27,7 +28,6 @@ from magshell.shell.interpolation import Interpolation
 from magshell.shell.point import SIZE, workspace
 from magshell.shell.section import predicted_stress, section
 from magshell.shell.state import State
-from magshell.typing import FloatArray, IntArray
 
 COMPONENTS = 10
 

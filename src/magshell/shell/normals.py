@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from magshell.arrays import FloatArray, IntArray
 from magshell.shell.shape_functions import NODES, serendipity
-from magshell.typing import FloatArray, IntArray
 
 
 def nodal_normals(points: FloatArray, elements: IntArray) -> FloatArray:

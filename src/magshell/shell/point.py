@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from magshell.arrays import FloatArray
 from magshell.compiled import inline
-from magshell.typing import FloatArray
 
 SIZE = 31
 U1, W1, W, ENHANCED, PHI, Q, Q1 = 0, 6, 12, 15, 18, 19, 23

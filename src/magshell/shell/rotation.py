@@ -14,8 +14,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from magshell.arrays import FloatArray
 from magshell.compiled import inline
-from magshell.typing import FloatArray
 
 
 def identity(count: int) -> FloatArray:

@@ -25,6 +25,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from magshell.arrays import FloatArray
 from magshell.compiled import also_compiled, choose_by_type, inline
 from magshell.magnetics import law as coupling_laws
 from magshell.magnetics.law import Coupling
@@ -36,7 +37,6 @@ from magshell.shell.geometry import SectionGeometry
 from magshell.shell.kinematics import base_vectors, moduli_on_legs, stress_vectors, stretch
 from magshell.shell.point import ENHANCED, PHI, Q1, U1, W1, Q, W, Workspace
 from magshell.shell.rotation import rotation_matrix, spin_map, wryness_maps
-from magshell.typing import FloatArray
 
 
 def _stress_and_tangent(material: Material, U: FloatArray, P: FloatArray, C: FloatArray) -> None:

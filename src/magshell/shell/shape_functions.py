@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from magshell.typing import FloatArray
+from magshell.arrays import FloatArray
 
 CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 MID_SIDES = np.array([[0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]])

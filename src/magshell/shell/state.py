@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from magshell.arrays import FloatArray
 from magshell.shell import rotation
-from magshell.typing import FloatArray
 
 
 class State(NamedTuple):

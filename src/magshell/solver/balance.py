@@ -11,11 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from magshell.arrays import FloatArray
 from magshell.assembly import Discretisation
 from magshell.magnetics import law
 from magshell.shell.evaluation import evaluate
 from magshell.shell.state import State
-from magshell.typing import FloatArray
 
 
 class Balance(NamedTuple):

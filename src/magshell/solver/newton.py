@@ -13,12 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from magshell.arrays import FloatArray
 from magshell.assembly import Assembly, Discretisation, InvertedElement
 from magshell.linalg import LinearSolver, SingularMatrix
 from magshell.shell.loops import Stresses
 from magshell.shell.state import State
 from magshell.solver.settings import Settings
-from magshell.typing import FloatArray
 
 HALVINGS = 4
 

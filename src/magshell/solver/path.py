@@ -8,13 +8,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from magshell.arrays import FloatArray
 from magshell.assembly import Discretisation
 from magshell.errors import InputError, suggest
 from magshell.model import Model
 from magshell.shell.state import State
 from magshell.solver.balance import Balance
 from magshell.solver.settings import Settings
-from magshell.typing import FloatArray
 
 
 class Step(NamedTuple):

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from magshell.arrays import FloatArray
 from magshell.assembly import Discretisation, InvertedElement
 from magshell.errors import SolveError
 from magshell.linalg import LinearSolver, make_solver, nested_dissection
@@ -17,7 +18,6 @@ from magshell.solver.events import Iteration, Observer
 from magshell.solver.newton import StepFailure, Trial, newton
 from magshell.solver.path import Path, Step
 from magshell.solver.settings import Settings
-from magshell.typing import FloatArray
 
 logger = logging.getLogger(__name__)
 
