@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from magshell import problem
+from magshell.arrays import FloatArray
 from magshell.problem import examples
 from magshell.problem.building import Problem
 from magshell.problem.report import describe
 from magshell.shell.shape_functions import gauss_legendre, serendipity
-from magshell.typing import FloatArray
 
 STRIP_STOPS = (1, 2, 3, 5, 10, 15, 20, 50)
 
