@@ -104,7 +104,9 @@ class Discretisation:
         self.modes = geometry.enhancement.shape[2]
         self.rest = self.body.shape.rest.shape[1]
         self._number_equations(ordering)
-        self._noise = ROUND_OFF * unit_forces(geometry, shape) * model.shell.material.shear_modulus
+        material = model.shell.material
+        stiffest = 2.0 * material.shear_modulus + material.lame_lambda
+        self._noise = ROUND_OFF * stiffest * unit_forces(geometry, shape)
         elements, values = len(mesh.elements), 3 * mesh.elements.shape[1] + 7 * self.rest
         self._out = loops.Assembled(
             np.zeros(self.pattern.indices.size),
