@@ -1,0 +1,318 @@
+"""Write the tables and examples of `docs/problem-file.md` from the schema that reads problem files.
+
+    python docs/make_reference.py            write
+    python docs/make_reference.py --check    exit with 1 if the page is not what would be written
+
+What a key means is said here; its kind, and its default, are those of `magshell.problem.schema`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import pathlib
+import sys
+from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
+
+from pydantic_core import PydanticUndefined
+
+import magshell as ms
+from magshell import units
+from magshell.problem import examples, fields, schema
+
+PAGE = pathlib.Path(__file__).parent / "problem-file.md"
+
+KINDS = {
+    fields.Length: "length",
+    fields.PositiveLength: "length > 0",
+    fields.NonNegativeStress: "stress ≥ 0",
+    fields.PositiveStress: "stress > 0",
+    fields.FluxDensity: "flux density",
+    fields.PositiveFluxDensity: "flux density > 0",
+    fields.Number: "number",
+    fields.PositiveNumber: "number > 0",
+    fields.Count: "whole number ≥ 1",
+    fields.Name: "name",
+    fields.Names: "name, or list of names",
+    fields.Divisions: "two whole numbers",
+    fields.AngleRange: "two angles",
+    fields.Position: "three lengths",
+    fields.FluxVector: "three flux densities",
+    fields.Direction: "three numbers, not all 0",
+    fields.Corners: "four corners, each two or three lengths",
+    str: "text",
+    schema.StrictBool: "true or false",
+    float: "a quantity",
+    tuple[float, float, float]: "three of them",
+    schema.Block: "table",
+    tuple[fields.PositiveFluxDensity, ...]: "list of flux densities > 0, rising",
+    dict[fields.Name, schema.Selection]: "table of selections",
+    dict[fields.Name, schema.Block]: "table of blocks",
+}
+
+GROUPS = {
+    "edge_groups": "More named edges, see *Selections*.",
+    "node_groups": "More named nodes, see *Selections*.",
+}
+MATERIAL = {
+    "law": "The material law.",
+    "shear_modulus": "$\\mu$.",
+    "lame_lambda": "$\\lambda$.",
+    "coupling_modulus": "$\\eta$, which ties the micro-rotation to the macro-rotation.",
+    "length_scale": "$l$ of the couple stress $\\mu l^2\\,\\Gamma$.",
+}
+REMANENCE = {"kind": "Which field.", "group": "Element groups it holds for; may be left out of a single entry."}
+SUPPORT = {"kind": "Which support.", "group": "Group of edges, nodes or elements whose nodes are held."}
+
+TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
+    "rectangle": (
+        schema.Rectangle,
+        {
+            "generator": "Which generator.",
+            "length": "Extent along $X_1$.",
+            "width": "Extent along $X_2$.",
+            "elements": "Elements along $X_1$ and $X_2$.",
+            **GROUPS,
+        },
+    ),
+    "blocks": (
+        schema.Blocks,
+        {
+            "generator": "Which generator.",
+            "elements": "Elements of every block that does not say its own.",
+            "blocks": "The blocks, by name; each is an element group.",
+            **GROUPS,
+        },
+    ),
+    "block": (
+        schema.Block,
+        {
+            "corners": "Counter-clockwise seen against the normal.",
+            "elements": "Elements along the side from corner 1 to 2, and along that from corner 2 to 3.",
+        },
+    ),
+    "cylinder": (
+        schema.Cylinder,
+        {
+            "generator": "Which generator.",
+            "radius": "Of the mid-surface.",
+            "length": "From the origin along the axis.",
+            "elements": "Elements around and along.",
+            "angle": "First and last angle, right-handed about the axis; a span of 360° is a whole tube.",
+            "axis": "Direction of the axis.",
+            "zero": "Direction of angle 0.",
+            **GROUPS,
+        },
+    ),
+    "sphere-patch": (
+        schema.SpherePatch,
+        {
+            "generator": "Which generator.",
+            "radius": "Of the mid-surface.",
+            "polar": "First and last polar angle, from $+X_3$.",
+            "azimuth": "First and last azimuth, from $+X_1$ towards $+X_2$.",
+            "elements": "Elements along the meridian and around.",
+            **GROUPS,
+        },
+    ),
+    "selection": (schema.Selection, {f"x{i}": f"Coordinate $X_{i}$; left out, it is free." for i in (1, 2, 3)}),
+    "shell": (schema.ShellTable, {"thickness": "$h$."}),
+    "neo-hookean": (schema.NeoHookean, MATERIAL),
+    "mooney-rivlin": (
+        schema.MooneyRivlin,
+        {**MATERIAL, "second_invariant_share": "Part of $\\mu$ carried by the second invariant, in [0, 1)."},
+    ),
+    "constant": (
+        schema.ConstantRemanence,
+        {
+            **REMANENCE,
+            "vector": "The remanent flux density; or instead",
+            "magnitude": "its magnitude, and",
+            "direction": "its direction.",
+        },
+    ),
+    "meridional": (
+        schema.MeridionalRemanence,
+        {
+            **REMANENCE,
+            "magnitude": "Its magnitude.",
+            "axis": "From the centre (the origin) to the pole that it points away from.",
+            "mirrored": "Whether it is reversed below the equator.",
+        },
+    ),
+    "circumferential": (
+        schema.CircumferentialRemanence,
+        {
+            **REMANENCE,
+            "magnitude": "Its magnitude.",
+            "axis": "Of the circles, through the origin; the sense is axis × radius.",
+            "towards": "Where its component along this direction would be negative, the sign is flipped.",
+        },
+    ),
+    "field": (
+        schema.FieldTable,
+        {
+            "flux_density": "At load factor 1.",
+            "stops": "Magnitudes that the path must hit; the end is always hit.",
+            "coupling": "The law that couples field and shell, see the [theory page](theory.md#5-magnetic-coupling).",
+        },
+    ),
+    "clamp": (schema.ClampTable, SUPPORT),
+    "simple": (schema.SimpleTable, SUPPORT),
+    "symmetry": (schema.SymmetryTable, {**SUPPORT, "normal": "Of the mirror plane."}),
+    "prescribe": (
+        schema.PrescribeTable,
+        {
+            **SUPPORT,
+            "field": "Displacement (length), director displacement (number), thickness stretch (1/length), "
+            "rotation (angle).",
+            "component": "Along $X_1$, $X_2$ or $X_3$; left out: all three.",
+            "value": "At load factor 1: one value, or three where all components are meant.",
+        },
+    ),
+    "solver": (
+        schema.SolverTable,
+        {
+            "tolerance": "Largest residual of each kind of unknown over the elements' forces of that kind.",
+            "max_iterations": "Linear solves after which a step is cut.",
+            "target_iterations": "Linear solves per step that the step size aims at.",
+            "first_step": "First increment of the load factor.",
+            "smallest_step": "An increment below this ends the solve.",
+            "largest_step": "No increment exceeds this.",
+            "linear_solver": "`superlu`, or `pardiso` where the extra is installed.",
+        },
+    ),
+    "file": (
+        schema.ProblemFile,
+        {
+            "title": "One line, shown by `magshell examples` and at the start of a run.",
+            "description": "For the reader of the file.",
+            "mesh": "The mid-surface.",
+            "shell": "The thickness.",
+            "material": "The material law and its parameters.",
+            "remanence": "The remanent flux density; elements without one have none.",
+            "field": "The external field.",
+            "supports": "What holds the shell.",
+            "probes": "Nodes to follow: a name and the reference position.",
+            "solver": "How the path is followed.",
+        },
+    ),
+}
+
+TOP = {
+    "mesh": "table",
+    "shell": "table",
+    "material": "table",
+    "field": "table",
+    "solver": "table",
+    "remanence": "list of tables",
+    "supports": "list of tables, at least one",
+    "probes": "table of positions",
+}
+OTHERWISE = {
+    ("neo-hookean", "coupling_modulus"): "$\\mu/10$",
+    ("neo-hookean", "length_scale"): "$h/10$",
+    ("mooney-rivlin", "coupling_modulus"): "$\\mu/10$",
+    ("mooney-rivlin", "length_scale"): "$h/10$",
+    ("blocks", "elements"): "each block its own",
+    ("block", "elements"): "those of `mesh`",
+    ("constant", "vector"): "magnitude and direction",
+    ("file", "solver"): "see below",
+}
+EXAMPLES = {
+    "example-rectangle": "strip-10",
+    "example-blocks": "thin-cross",
+    "example-cylinder": "pump",
+    "example-sphere-patch": "gripper",
+}
+DIMENSIONS = (units.LENGTH, units.STRESS, units.FLUX_DENSITY, units.ANGLE, units.INVERSE_LENGTH)
+
+
+def main() -> int:
+    """Write or check the page."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--check", action="store_true", help="write nothing; exit with 1 if the page is stale")
+    check = parser.parse_args().check
+    page = PAGE.read_text(encoding="utf-8")
+    fresh = filled(page)
+    if check and fresh != page:
+        print(f"{PAGE.name} is stale: run python docs/make_reference.py")
+        return 1
+    if not check:
+        PAGE.write_text(fresh, encoding="utf-8")
+    return 0
+
+
+def filled(page: str) -> str:
+    """The page with every block between its marks made anew."""
+    blocks = {name: table(name) for name in TABLES}
+    blocks |= {name: f"```toml\n{examples.text(problem)}```" for name, problem in EXAMPLES.items()}
+    blocks["units"] = units_table()
+    for name, block in blocks.items():
+        begin, end = f"<!-- {name}: docs/make_reference.py -->", f"<!-- end of {name} -->"
+        before, rest = page.split(begin)
+        page = f"{before}{begin}\n{block}\n{end}{rest.split(end)[1]}"
+    return page
+
+
+def table(name: str) -> str:
+    """Keys of a table of the schema."""
+    cls, meanings = TABLES[name]
+    if set(meanings) != set(cls.model_fields):
+        raise SystemExit(f"{name}: described are {sorted(meanings)}, the schema has {sorted(cls.model_fields)}")
+    hints = get_type_hints(cls, include_extras=True)
+    rows = ["| Key | Value | Default | Meaning |", "|---|---|---|---|"]
+    for key, meaning in meanings.items():
+        kind = TOP[key] if name == "file" and key in TOP else kind_of(hints[key])
+        rows.append(f"| `{key}` | {kind} | {default(name, cls, key)} | {meaning} |")
+    return "\n".join(rows)
+
+
+def kind_of(hint: Any) -> str:
+    """In words, what may stand to the right of the equals sign."""
+    if get_origin(hint) is Literal:
+        return " or ".join(f'`"{choice}"`' if isinstance(choice, str) else f"`{choice}`" for choice in get_args(hint))
+    for known, words in KINDS.items():
+        if hint == known:
+            return words
+    if get_origin(hint) is Annotated:
+        return kind_of(get_args(hint)[0])
+    parts = [part for part in get_args(hint) if part is not type(None)]
+    return ", or ".join(kind_of(part) for part in parts)
+
+
+def default(name: str, cls: type[schema.Table], key: str) -> str:
+    """What holds where the key is left out."""
+    if (name, key) in OTHERWISE:
+        return OTHERWISE[name, key]
+    if cls is schema.SolverTable:
+        settings = {field.name: field.default for field in dataclasses.fields(ms.Settings)}
+        return written(settings[key])
+    value = cls.model_fields[key].default
+    if value is PydanticUndefined:
+        return "**required**"
+    if key == "angle":
+        return f'`["{value[0]:g} deg", "{value[1]:g} deg"]`'
+    return "none" if value in (None, "", (), {}) else written(value)
+
+
+def written(value: Any) -> str:
+    """A default as it would stand in the file."""
+    if isinstance(value, bool):
+        return f"`{str(value).lower()}`"
+    if isinstance(value, str):
+        return f'`"{value}"`'
+    if isinstance(value, tuple):
+        return f"`[{', '.join(f'{each:g}' for each in value)}]`"
+    return f"`{value:g}`"
+
+
+def units_table() -> str:
+    """Kinds of quantity and the units they may be written in."""
+    rows = ["| Quantity | Units, SI first |", "|---|---|"]
+    rows += [f"| {kind.name} | {', '.join(f'`{unit}`' for unit in kind.units)} |" for kind in DIMENSIONS]
+    return "\n".join(rows)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
