@@ -1,0 +1,191 @@
+"""What every test of the numerics runs over: all registered laws, small meshes, and a model that nothing holds.
+
+A law joins all tests here by being registered (`material_law`, `coupling_law`), and by having its reference formula in
+`materials/reference.py` or `magnetics/reference.py`. Everything is of the order of one: elements of unit size, a shear
+modulus and a permeability of one, so that figures of different kinds can be compared.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from magshell import magnetics, materials
+from magshell.assembly import Discretisation
+from magshell.magnetics import UniformField, remanence
+from magshell.mesh import Mesh, rectangle
+from magshell.model import Shell
+from magshell.shell.normals import nodal_normals
+from magshell.shell.state import State
+from magshell.supports import resolve
+
+PARAMETERS = {
+    "shear_modulus": 1.0,
+    "lame_lambda": 1.7,
+    "coupling_modulus": 0.3,
+    "length_scale": 0.2,
+    "vacuum_permeability": 0.8,
+}
+THICKNESS = 0.15
+REMANENCE = (0.9, 0.4, -0.3)
+FIELD = (0.2, -0.3, 0.4)
+
+
+def example(law):
+    """An instance of a law; parameters that only this law has keep their defaults."""
+    return law(**{name: PARAMETERS[name] for name in law._fields if name in PARAMETERS})
+
+
+def name_of(law):
+    return type(law).__name__
+
+
+MATERIALS = [example(law) for law in materials.laws()]
+COUPLINGS = [example(law) for law in magnetics.laws()]
+MATERIAL, COUPLING = materials.MicropolarNeoHookean, magnetics.MicropolarCouple
+
+each_material = pytest.mark.parametrize("material", MATERIALS, ids=name_of)
+each_coupling = pytest.mark.parametrize("coupling", COUPLINGS, ids=name_of)
+
+
+def each_pair(function):
+    """Run a test over every material law with every coupling law."""
+    return each_material(each_coupling(function))
+
+
+# -- meshes ----------------------------------------------------------------------------------------------------------
+
+
+def flat(plane):
+    """Surface X3 = 0 over points (n, 2)."""
+    return np.column_stack([plane, np.zeros(len(plane))])
+
+
+def bowl(plane):
+    """A doubly curved surface without symmetry, radii of curvature of some three elements, turned anyhow."""
+    x, y = plane.T
+    height = 0.14 * x**2 - 0.09 * y**2 + 0.12 * x * y + 0.02 * x**3
+    return np.column_stack([plane, height]) @ Rotation.from_rotvec([0.7, -0.4, 1.1]).as_matrix().T
+
+
+def patch(counts, distortion=0.0, surface=flat, keep_boundary=False, map_plane=None):
+    """Unit elements whose corners are moved at random by up to `distortion`; mid-sides half-way in the plane.
+
+    `map_plane` maps the plane afterwards (corners and mid-sides alike), `surface` lifts it into space.
+    """
+    regular = rectangle(*counts, counts)
+    plane = regular.points[:, :2].copy()
+    moved = regular.corner_nodes
+    if keep_boundary:
+        moved = np.setdiff1d(moved, regular.boundary_edges)
+    plane[moved] += np.random.default_rng(7).uniform(-distortion, distortion, (len(moved), 2))
+    corners = regular.elements[:, :4]
+    plane[regular.elements[:, 4:]] = 0.5 * (plane[corners] + plane[np.roll(corners, -1, axis=1)])
+    if map_plane is not None:
+        plane = map_plane(plane)
+    return with_points(regular, surface(plane))
+
+
+def with_points(mesh, points):
+    """The same mesh at other places."""
+    return Mesh(points, mesh.elements, mesh.element_groups, mesh.edge_groups, mesh.node_groups)
+
+
+ELEMENTS = {
+    "flat": lambda: patch((1, 1)),
+    "distorted": lambda: patch((1, 1), distortion=0.25),
+    "curved": lambda: patch((1, 1), distortion=0.2, surface=bowl),
+}
+PATCHES = {
+    "flat patch": lambda: patch((3, 3), distortion=0.25),
+    "curved patch": lambda: patch((2, 2), distortion=0.2, surface=bowl),
+}
+
+
+def each_mesh(meshes):
+    """Run a test over named meshes, given as functions that make them."""
+    return pytest.mark.parametrize("mesh", [pytest.param(make(), id=name) for name, make in meshes.items()])
+
+
+# -- models and states -----------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class Unsupported:
+    """What `Discretisation` needs of a model, for a body that nothing holds (a `Model` refuses that) or hardly."""
+
+    shell: Shell
+    field: UniformField
+    coupling: object
+    supports: tuple = ()
+
+    @cached_property
+    def constraints(self):
+        return resolve(self.shell.mesh, self.supports)
+
+    @cached_property
+    def normals(self):
+        return nodal_normals(self.shell.mesh.points, self.shell.mesh.elements)
+
+
+def free_body(
+    mesh,
+    material=None,
+    coupling=None,
+    *,
+    thickness=THICKNESS,
+    remanent=REMANENCE,
+    field=FIELD,
+    supports=(),
+    ordering=lambda graph: np.arange(graph.shape[0]),
+):
+    """Discretisation of a mesh that only `supports` hold; `remanent` is a vector or one vector per element."""
+    vectors = np.broadcast_to(np.asarray(remanent, dtype=float), (len(mesh.elements), 3))
+    shell = Shell(mesh, thickness, material or example(MATERIAL), remanence.per_element(vectors))
+    body = Unsupported(shell, UniformField(field), coupling or example(COUPLING), tuple(supports))
+    return Discretisation(body, ordering)
+
+
+def random_state(d, seed, strain=0.1, turn=None):
+    """A large rotation (vector `turn`, rad; None: at random) and a random strain field of the size `strain` on it."""
+    rng = np.random.default_rng(seed)
+    turn = Rotation.random(rng=rng) if turn is None else Rotation.from_rotvec(turn)
+    nodes, corners = len(d.mesh.points), d.mesh.corner_nodes
+    F = turn.as_matrix() @ (np.eye(3) + rng.uniform(-strain, strain, (3, 3)))
+    state = d.undeformed()
+    u = d.mesh.points @ (F - np.eye(3)).T + 0.3 * strain * rng.uniform(-1, 1, (nodes, 3))
+    w, phi, q = state.w.copy(), state.phi.copy(), state.q.copy()
+    w[corners] = (d.normals @ (F - np.eye(3)).T + strain * rng.uniform(-1, 1, (nodes, 3)))[corners]
+    phi[corners] = strain * rng.uniform(-1, 1, len(corners)) / d.model.shell.thickness
+    micro = turn * Rotation.from_rotvec(2.0 * strain * rng.uniform(-1, 1, (len(corners), 3)))
+    q[corners] = micro.as_quat(scalar_first=True)
+    return State(u, w, phi, q, strain * rng.uniform(-1, 1, state.alpha.shape))
+
+
+def random_increment(d, seed, size=0.1):
+    """A nodal increment (nodes, 10), zero where a node does not carry the field, and Δα."""
+    rng = np.random.default_rng(seed)
+    increment = size * rng.uniform(-1, 1, d.carried.shape) * d.carried
+    return increment, size * rng.uniform(-1, 1, (len(d.mesh.elements), d.modes, 3))
+
+
+def dense(d, matrix):
+    """The matrix on (node, component) pairs, zero where a component is fixed or absent: (10 nodes, 10 nodes)."""
+    full = np.zeros((d.free.size, d.free.size))
+    at, number = np.flatnonzero(d.free), d.equations.number[d.free]
+    full[np.ix_(at, at)] = matrix.toarray()[np.ix_(number, number)]
+    return full
+
+
+def scaled_error(actual, expected):
+    """Largest error: of a matrix with rows and columns scaled to unit largest entries, of a vector over its largest."""
+    difference = np.abs(actual - expected)
+    if expected.ndim == 1:
+        return float(difference.max() / np.abs(expected).max())
+    rows, columns = np.abs(expected).max(axis=1), np.abs(expected).max(axis=0)
+    scale = np.sqrt(np.outer(rows, columns))
+    return float((difference / np.where(scale > 0.0, scale, np.abs(expected).max())).max())

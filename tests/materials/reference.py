@@ -1,0 +1,41 @@
+"""Strain energies of the material laws, written independently of the package, for arrays of jets."""
+
+from __future__ import annotations
+
+import numpy as np
+from shell.jets import log
+
+from magshell.materials import MicropolarMooneyRivlin, MicropolarNeoHookean
+
+
+def cofactor(U):
+    """Rows are the cross products of the other two rows."""
+    return np.cross(U[[1, 2, 0]], U[[2, 0, 1]])
+
+
+def determinant(U):
+    return U[0] @ cofactor(U)[0]
+
+
+def relative_rotation(material, U):
+    """eta/4 |U - Uᵀ|²: what holds the micro-rotation to the macro-rotation."""
+    return 0.25 * material.coupling_modulus * np.sum((U - U.T) ** 2)
+
+
+def neo_hookean(material, U):
+    """mu/2 (|U|² - 3) - mu ln J + lambda/2 (ln J)²."""
+    log_J, mu, lam = log(determinant(U)), material.shear_modulus, material.lame_lambda
+    return 0.5 * mu * (np.sum(U**2) - 3) - mu * log_J + 0.5 * lam * log_J**2 + relative_rotation(material, U)
+
+
+def mooney_rivlin(material, U):
+    """Second invariant |cof U|², volumetric energy of Simo and Taylor."""
+    J, share = determinant(U), material.second_invariant_share
+    mu1, mu2 = (1 - share) * material.shear_modulus, share * material.shear_modulus
+    invariants = 0.5 * mu1 * (np.sum(U**2) - 3) + 0.5 * mu2 * (np.sum(cofactor(U) ** 2) - 3)
+    volumetric = 0.25 * (material.lame_lambda - 2 * mu2) * (J**2 - 1 - 2 * log(J))
+    return invariants - (mu1 + 2 * mu2) * log(J) + volumetric + relative_rotation(material, U)
+
+
+ENERGIES = {MicropolarNeoHookean: neo_hookean, MicropolarMooneyRivlin: mooney_rivlin}
+"""W(U) by law; a new law needs its entry here."""

@@ -1,0 +1,243 @@
+"""The shell written from the paper's formulas, in jets: first and second derivatives come without further algebra.
+
+The point: F = (F0 + ā ⊗ A³ + z F1) Q⁻¹ with the surface's own dual base and shifter, U = R̃ᵀF, the wryness as the axial
+vectors of R̃ᵀR̃,α with R̃,α the derivative of the rotation *matrix*. The element: interpolation, spins and enhanced
+parameters. Nothing of this is shared with the package but the order of the nodes. A point's x is a dict of named parts
+(`kernel_access.unpack`).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from magnetics import reference as coupling_reference
+from materials import reference as material_reference
+
+from shell import jets
+
+
+class Point(NamedTuple):
+    """The undeformed shell at a point, and what acts on it; k counts levels through the thickness."""
+
+    A: np.ndarray
+    D: np.ndarray
+    dD: np.ndarray
+    dual: np.ndarray
+    z: np.ndarray
+    Q_inverse: np.ndarray
+    volume: np.ndarray
+    remanence: np.ndarray
+    B: np.ndarray
+
+
+def make_point(A, D, dD, weight, thickness, remanence, B):
+    """Dual base of (A_1, A_2, D), shifter Q = I - z B with B = -D,α ⊗ A^α, two Gauss points through the thickness."""
+    covariant = np.stack([A[0], A[1], D], axis=1)
+    dual = np.linalg.inv(covariant)
+    z = 0.5 * thickness * np.array([-1.0, 1.0]) / np.sqrt(3.0)
+    Q = np.eye(3) + z[:, None, None] * np.einsum("ai,aj->ij", dD, dual[:2])
+    volume = weight * 0.5 * thickness * np.linalg.det(covariant) * np.linalg.det(Q)
+    return Point(A, D, dD, dual, z, np.linalg.inv(Q), volume, np.asarray(remanence), np.asarray(B))
+
+
+def skew(v):
+    """[v]×, with [v]× a = v × a."""
+    return np.array([[0.0 * v[0], -v[2], v[1]], [v[2], 0.0 * v[0], -v[0]], [-v[1], v[0], 0.0 * v[0]]])
+
+
+def axial(S):
+    """axial([v]×) = v, of matrices (3, 3, …)."""
+    return 0.5 * np.array([S[2, 1] - S[1, 2], S[0, 2] - S[2, 0], S[1, 0] - S[0, 1]])
+
+
+def _rotation_form(p, q):
+    """Symmetric bilinear matrix M(p, q) with M(q, q) = |q|² R(q), Rodrigues' formula in half angles."""
+    v, w = p[1:], q[1:]
+    return (
+        (p[0] * q[0] - v @ w) * np.eye(3) + np.outer(v, w) + np.outer(w, v) + p[0] * skew(w) + q[0] * skew(v)
+    )  # fmt: skip
+
+
+def rotation(q):
+    """Rotation matrix; q need not be a unit quaternion."""
+    return _rotation_form(q, q) / (q @ q)
+
+
+def rotation_along(q, dq):
+    """Derivative of the rotation matrix along dq, by the quotient rule."""
+    return 2.0 * (_rotation_form(q, dq) - (q @ dq) * rotation(q)) / (q @ q)
+
+
+def deformation_gradients(f, point):
+    """Eqs bfF2, F0F1_1 at each level, with the enhancement added to F0; f are the parts of x."""
+    dual, d = point.dual, point.D + f["w"]
+    F0 = (point.A + f["du"]).T @ dual[:2] + np.outer(d + f["enhanced"], dual[2])
+    F1 = (point.dD + f["dw"]).T @ dual[:2] + 2.0 * f["phi"] * np.outer(d, dual[2])
+    return [(F0 + z * F1) @ Q_inverse for z, Q_inverse in zip(point.z, point.Q_inverse, strict=True)]
+
+
+def wryness_vectors(f):
+    """axial(R̃ᵀ R̃,α), rows of (2, 3)."""
+    R = rotation(f["q"])
+    return np.array([axial(R.T @ rotation_along(f["q"], dq)) for dq in f["dq"]])
+
+
+def strain_energy(material, f, point):
+    """Sum over the thickness of W(U) + mu l²/2 tr(Γ Γᵀ)."""
+    R, κ = rotation(f["q"]), wryness_vectors(f)
+    energy, total = material_reference.ENERGIES[type(material)], 0.0
+    for F, volume, Q_inverse in zip(deformation_gradients(f, point), point.volume, point.Q_inverse, strict=True):
+        Γ = κ.T @ point.dual[:2] @ Q_inverse
+        couple = 0.5 * material.shear_modulus * material.length_scale**2 * np.sum(Γ * Γ)
+        total = total + volume * (energy(material, R.T @ F) + couple)
+    return total
+
+
+def magnetic_work(coupling, f, point):
+    """Covector of the magnetic work and its Jacobian with respect to the variables of the jets.
+
+    Of the energy where the law has one; else of f · δm + c · δω with δω the axial vector of δR̃ R̃ᵀ.
+    """
+    law, R = type(coupling), rotation(f["q"])
+    m, n = [F @ point.remanence for F in deformation_gradients(f, point)], R @ point.remanence
+    if law in coupling_reference.ENERGIES:
+        energy = sum(
+            volume * coupling_reference.ENERGIES[law](coupling, m_k, n, point.B)
+            for volume, m_k in zip(point.volume, m, strict=True)
+        )
+        return energy.gradient, energy.hessian
+    R_0, R_1, R_2 = jets.value(R), jets.gradient(R), jets.hessian(R)
+    spin = axial(np.einsum("ija,kj->ika", R_1, R_0))
+    d_spin = axial(np.einsum("ijab,kj->ikab", R_2, R_0) + np.einsum("ija,kjb->ikab", R_1, R_1))
+    g, H = 0.0, 0.0
+    for volume, m_k in zip(point.volume, m, strict=True):
+        force, couple = coupling_reference.FORCES[law](coupling, m_k, n, point.B)
+        g = g + volume * (jets.value(force) @ jets.gradient(m_k) + jets.value(couple) @ spin)
+        H = H + volume * (
+            np.einsum("ka,kb->ab", jets.gradient(m_k), jets.gradient(force))
+            + np.einsum("k,kab->ab", jets.value(force), jets.hessian(m_k))
+            + np.einsum("ka,kb->ab", spin, jets.gradient(couple))
+            + np.einsum("k,kab->ab", jets.value(couple), d_spin)
+        )
+    return g, H
+
+
+# -- the element -----------------------------------------------------------------------------------------------------
+
+NODAL = 80
+"""Variables of an element: u, w, φ, spin of each of its eight nodes (ten each, absent ones unused), then α (2, 3)."""
+SIZE = NODAL + 6
+
+
+def four(parent):
+    """Bilinear functions of the corners."""
+    xi, eta = parent
+    return 0.25 * np.array([(1 - xi) * (1 - eta), (1 + xi) * (1 - eta), (1 + xi) * (1 + eta), (1 - xi) * (1 + eta)])
+
+
+def eight(parent):
+    """Serendipity functions: bubbles of the sides, and the corners less half of their two sides'."""
+    xi, eta = parent
+    sides = 0.5 * np.array(
+        [(1 - xi**2) * (1 - eta), (1 + xi) * (1 - eta**2), (1 - xi**2) * (1 + eta), (1 - xi) * (1 - eta**2)]
+    )
+    return np.concatenate([four(parent) - 0.5 * (sides + np.roll(sides, 1)), sides])
+
+
+class Surface(NamedTuple):
+    """The undeformed element at a parent point: its functions and mid-surface.
+
+    N4, N8 with two derivatives in rows 1 and 2; `director` the functions of the unit director, likewise.
+    """
+
+    N4: np.ndarray
+    N8: np.ndarray
+    director: np.ndarray
+    X: np.ndarray
+    A: np.ndarray
+    D: np.ndarray
+    dD: np.ndarray
+    area: float
+
+
+def surface(d, e, parent):
+    """Isoparametric surface; the director is the interpolated normal of unit length."""
+    nodes, at = d.mesh.elements[e], jets.variables(parent)
+    N4, N8 = four(at), eight(at)
+    normals = d.normals[nodes[:4]]
+    mean = N4 @ normals
+    director = N4 / jets.sqrt(mean @ mean)
+    X, D = N8 @ d.mesh.points[nodes], director @ normals
+    rows = lambda a: np.concatenate([jets.value(a)[None], jets.gradient(a).T])  # noqa: E731
+    A = jets.gradient(X).T
+    return Surface(
+        rows(N4), rows(N8), rows(director), jets.value(X), A, jets.value(D), jets.gradient(D).T,
+        float(np.linalg.norm(np.cross(A[0], A[1]))),
+    )  # fmt: skip
+
+
+def turned(spin, q):
+    """exp(spin/2) q to second order in the spin: as much as first and second derivatives see."""
+    s, v = 1.0 - (spin @ spin) / 8.0, 0.5 * spin
+    return np.concatenate([[s * q[0] - v @ q[1:]], s * q[1:] + q[0] * v + np.cross(v, q[1:])])
+
+
+def element_parts(d, state, e, parent, at):
+    """Parts of x at a parent point, jets of the element's variables, and the surface there."""
+    nodes = d.mesh.elements[e]
+    corners, here, centre = nodes[:4], surface(d, e, parent), surface(d, e, np.zeros(2))
+    nodal, alpha = at[:NODAL].reshape(8, 10), state.alpha[e] + at[NODAL:].reshape(2, 3)
+    u, w, phi = state.u[nodes] + nodal[:, :3], state.w[corners] + nodal[:4, 3:6], state.phi[corners] + nodal[:4, 6]
+    sign = np.where(state.q[corners] @ state.q[corners[0]] < 0.0, -1.0, 1.0)
+    q = np.array([turned(nodal[n, 7:], sign[n] * state.q[corners[n]]) for n in range(4)])
+    w_here, q_here = here.director @ w, here.N4 @ q
+    parts = {
+        "du": here.N8[1:] @ u,
+        "w": w_here[0],
+        "dw": w_here[1:],
+        "enhanced": centre.area / here.area * (np.asarray(parent) @ alpha),
+        "phi": here.N4[0] @ phi,
+        "q": q_here[0],
+        "dq": q_here[1:],
+    }
+    return parts, here
+
+
+RULE = [np.array([xi, eta]) / np.sqrt(3.0) for xi in (-1.0, 1.0) for eta in (-1.0, 1.0)]
+
+
+def point_of(d, here, e, B):
+    """The point of a surface; the remanence of the battery's bodies is constant within an element."""
+    return make_point(here.A, here.D, here.dD, 1.0, d.model.shell.thickness, d.body.remanence[e, 0], B)
+
+
+def element(d, state, e, B):
+    """Residual (86,) and tangent (86, 86) before condensation, in the chart exp(ϑ/2) q about the state."""
+    r, K = np.zeros(SIZE), np.zeros((SIZE, SIZE))
+    for parent in RULE:
+        f, here = element_parts(d, state, e, parent, jets.variables(np.zeros(SIZE)))
+        point = point_of(d, here, e, B)
+        energy, (g, H) = strain_energy(d.model.shell.material, f, point), magnetic_work(d.model.coupling, f, point)
+        r += energy.gradient + g
+        K += energy.hessian + H
+    return r, K
+
+
+def stresses(d, state, e, variation):
+    """P (points, levels, 3, 3) and κ (points, 2, 3) of an element, and their derivatives along a variation (86,)."""
+    material = d.model.shell.material
+    energy = material_reference.ENERGIES[type(material)]
+    P, dP, κ, dκ = [], [], [], []
+    for parent in d.body.shape.parent:
+        f, here = element_parts(d, state, e, parent, jets.variables(np.zeros(SIZE)))
+        for F in deformation_gradients(f, point_of(d, here, e, np.zeros(3))):
+            U = rotation(f["q"]).T @ F
+            W = energy(material, jets.variables(jets.value(U)))
+            P.append(W.gradient.reshape(3, 3))
+            dP.append((W.hessian @ (jets.gradient(U) @ variation).ravel()).reshape(3, 3))
+        vectors = wryness_vectors(f)
+        κ.append(jets.value(vectors))
+        dκ.append(jets.gradient(vectors) @ variation)
+    shape = (len(d.body.shape.parent), -1, 3, 3)
+    return np.reshape(P, shape), np.array(κ), np.reshape(dP, shape), np.array(dκ)

@@ -1,0 +1,145 @@
+"""The element against the independent derivation: residual, tangent, condensation, spins, predicted stresses."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from battery import (
+    ELEMENTS,
+    FIELD,
+    dense,
+    each_coupling,
+    each_material,
+    each_pair,
+    free_body,
+    random_increment,
+    random_state,
+    scaled_error,
+)
+
+from magshell import magnetics
+from shell import oracle
+
+# Round-off of some 10⁴ products and of the condensation's division, which costs the condition number of K_αα (10–100).
+TOLERANCE = 1e-11
+
+
+def reference(d, state):
+    """Residual and tangent of a one-element body on (node, component) pairs then α, before condensation."""
+    r, K = oracle.element(d, state, 0, FIELD)
+    where = (10 * d.mesh.elements[0][:, None] + np.arange(10)).ravel()
+    order = np.concatenate([where, np.arange(oracle.NODAL, oracle.SIZE)])
+    r_sorted, K_sorted = np.zeros_like(r), np.zeros_like(K)
+    r_sorted[order], K_sorted[np.ix_(order, order)] = r, K
+    return r_sorted, K_sorted
+
+
+def condensed(r, K):
+    """Schur complement of α, the residual that goes with it, and (K_αα⁻¹ r_α, K_αα⁻¹ K_αv)."""
+    v, a = slice(0, oracle.NODAL), slice(oracle.NODAL, None)
+    solved = np.linalg.solve(K[a, a], np.column_stack([r[a], K[a, v]]))
+    return r[v] - K[v, a] @ solved[:, 0], K[v, v] - K[v, a] @ solved[:, 1:], solved[:, 0], solved[:, 1:]
+
+
+@each_pair
+@pytest.mark.parametrize("seed", [1, 2])
+def test_residual_tangent_and_condensation(material, coupling, seed):
+    d = free_body(ELEMENTS["curved"](), material, coupling)
+    state = random_state(d, seed)
+    assembly = d.assemble(state, 1.0)
+    r, K = reference(d, state)
+    r_condensed, K_condensed, offset, gain = condensed(r, K)
+    right_side = np.zeros(d.free.size)
+    right_side[d.free.ravel()] = assembly.right_side[d.equations.number[d.free]]
+    increment, _ = random_increment(d, seed)
+    d_alpha = -offset - gain @ increment.ravel()
+    errors = {
+        "residual": scaled_error(assembly.residual.ravel(), r[: oracle.NODAL]),
+        "right side": scaled_error(right_side, -r_condensed),
+        "tangent": scaled_error(dense(d, assembly.matrix), K_condensed),
+        "recovered α": scaled_error(d.recover(increment).ravel(), d_alpha),
+    }
+    assert max(errors.values()) < TOLERANCE, errors
+
+
+@each_pair
+def test_tangent_is_symmetric_exactly_for_conservative_laws(material, coupling):
+    d = free_body(ELEMENTS["curved"](), material, coupling)
+    K = dense(d, d.assemble(random_state(d, 3), 1.0).matrix)
+    asymmetry = scaled_error(K, K.T)
+    if magnetics.is_conservative(coupling):
+        assert asymmetry < 1e-12, f"asymmetry {asymmetry:.1e}"
+    else:
+        assert asymmetry > 1e-6, f"asymmetry {asymmetry:.1e}: the law says that it has no energy"
+
+
+@each_pair
+def test_mixed_tangent_with_the_states_own_stresses_is_the_plain_one(material, coupling):
+    d = free_body(ELEMENTS["curved"](), material, coupling)
+    state = random_state(d, 4)
+    plain, right_side = dense(d, d.assemble(state, 1.0).matrix), d.assemble(state, 1.0).right_side
+    mixed = d.assemble(state, 1.0, d.stresses_at(state))
+    errors = scaled_error(dense(d, mixed.matrix), plain), scaled_error(mixed.right_side, right_side)
+    assert max(errors) < 1e-13, f"tangent {errors[0]:.1e}, right side {errors[1]:.1e}"
+
+
+@each_coupling
+def test_mixed_tangent_with_other_stresses_keeps_the_residual(coupling):
+    d = free_body(ELEMENTS["curved"](), coupling=coupling)
+    state, other = random_state(d, 4), random_state(d, 5)
+    plain = d.assemble(state, 1.0)
+    K, residual = dense(d, plain.matrix), plain.residual
+    mixed = d.assemble(state, 1.0, d.stresses_at(other))
+    assert np.array_equal(mixed.residual, residual)
+    change = scaled_error(dense(d, mixed.matrix), K)
+    assert change > 1e-3, f"the tangent changes by {change:.1e}: the given stresses are not used"
+
+
+@each_material
+def test_residual_alone_is_the_same(material):
+    d = free_body(ELEMENTS["curved"](), material)
+    state = random_state(d, 4)
+    with_tangent = d.assemble(state, 1.0).residual
+    alone = d.assemble(state, 1.0, tangent=False)
+    assert alone.matrix is None
+    assert np.array_equal(alone.residual, with_tangent)
+
+
+@each_material
+def test_predicted_stresses_are_the_derivative_of_the_stresses(material):
+    d = free_body(ELEMENTS["curved"](), material)
+    state, (increment, d_alpha) = random_state(d, 6), random_increment(d, 6)
+    variation = np.concatenate([increment[d.mesh.elements[0]].ravel(), d_alpha[0].ravel()])
+    P, κ, dP, dκ = oracle.stresses(d, state, 0, variation)
+    own, predicted = d.stresses_at(state), d.predicted_stresses(state, increment, d_alpha)
+    errors = {
+        "P": scaled_error(own.P[0].ravel(), P.ravel()),
+        "κ": scaled_error(own.kappa[0].ravel(), κ.ravel()),
+        "ΔP": scaled_error((predicted.P - own.P)[0].ravel(), dP.ravel()),
+        "Δκ": scaled_error((predicted.kappa - own.kappa)[0].ravel(), dκ.ravel()),
+    }
+    assert max(errors.values()) < TOLERANCE, errors
+
+
+@each_material
+def test_predicted_stresses_are_linear_in_the_increment(material):
+    d = free_body(ELEMENTS["curved"](), material)
+    state, one, other = random_state(d, 6), random_increment(d, 7), random_increment(d, 8)
+    own = d.stresses_at(state)
+    both = d.predicted_stresses(state, *(2.0 * a - 3.0 * b for a, b in zip(one, other, strict=True)))
+    first, second = d.predicted_stresses(state, *one), d.predicted_stresses(state, *other)
+    for name in ("P", "kappa"):
+        start, a, b = (getattr(stresses, name).ravel() for stresses in (own, first, second))
+        error = scaled_error(getattr(both, name).ravel() - start, 2.0 * (a - start) - 3.0 * (b - start))
+        assert error < 1e-13, f"{name}: {error:.1e}"
+
+
+def test_the_sign_of_a_nodes_quaternion_means_nothing():
+    d = free_body(ELEMENTS["curved"]())
+    state = random_state(d, 9)
+    flipped = state._replace(q=state.q * np.where(np.arange(len(state.q)) % 3 == 0, -1.0, 1.0)[:, None])
+    first = d.assemble(state, 1.0)
+    residual, K = first.residual, dense(d, first.matrix)
+    second = d.assemble(flipped, 1.0)
+    errors = scaled_error(second.residual.ravel(), residual.ravel()), scaled_error(dense(d, second.matrix), K)
+    assert max(errors) < 1e-14, errors
