@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import inspect
 import os
 import sys
 import tempfile
@@ -22,8 +23,10 @@ from numba.extending import overload
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 # Sums may be reordered and fused (vector instructions), but NaN and infinity keep their meaning.
+LAWS = ("material", "coupling")
 KERNEL_FOLDERS = ("shell", "materials", "magnetics")
 _FASTMATH = {"reassoc", "contract", "nsz", "arcp"}
+_LAW_OPTIONS = {"fastmath": _FASTMATH, "error_model": "numpy", "_nrt": True}
 
 
 def _user_cache() -> Path:
@@ -52,31 +55,73 @@ def cache_directory() -> Path:
     return folder
 
 
-def is_compiled(function: Any) -> bool:
-    """Whether some specialisation of the kernel waits in the cache, so that its first call is quick."""
-    return any(cache_directory().rglob(f"*.{function.py_func.__name__}-*.nbi"))
+class Kernel:
+    """A compiled function of laws and arrays, called as the Python function it was made from.
+
+    Every combination of law types has a cache folder of its own, named by the laws and by a digest of their sources:
+    a law outside this package never stands in the way of a process that does not know it.
+    """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self.py_func = function
+        names = list(inspect.signature(function).parameters)
+        self._laws = [names.index(name) for name in LAWS if name in names]
+        self._compiled: dict[tuple[type, ...], Callable[..., Any]] = {}
+
+    def __call__(self, *arguments: Any) -> Any:
+        laws = tuple(type(arguments[position]) for position in self._laws)
+        if laws not in self._compiled:
+            self._compiled[laws] = self._compile(laws)
+        return self._compiled[laws](*arguments)
+
+    def _folder(self, laws: tuple[type, ...]) -> Path | None:
+        """None where a law has no source file, for instance typed at a prompt."""
+        parts = []
+        for law in laws:
+            try:
+                digest = hashlib.sha256(Path(inspect.getfile(law)).read_bytes()).hexdigest()[:12]
+            except (OSError, TypeError):
+                return None
+            parts.append(f"{law.__module__}.{law.__name__}-{digest}")
+        return cache_directory().joinpath(*parts)
+
+    def _compile(self, laws: tuple[type, ...]) -> Callable[..., Any]:
+        options = {"nogil": True, "fastmath": _FASTMATH, "error_model": "numpy"}
+        folder = self._folder(laws)
+        if folder is None:
+            return numba.njit(**options)(self.py_func)
+        folder.mkdir(parents=True, exist_ok=True)
+        previous = numba.config.CACHE_DIR
+        numba.config.CACHE_DIR = str(folder)
+        try:
+            return numba.njit(cache=True, **options)(self.py_func)
+        finally:
+            numba.config.CACHE_DIR = previous
+
+    def is_compiled(self, *laws: type) -> bool:
+        """Whether it waits in the cache for these laws, so that its first call is quick."""
+        folder = self._folder(laws)
+        return folder is not None and any(folder.rglob(f"*.{self.py_func.__name__}-*.nbi"))
 
 
-def jit(function: Function) -> Function:
-    """Compile with Numba, cached on disk, releasing the GIL."""
-    previous = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(cache_directory())
-    try:
-        compiled: Function = numba.njit(cache=True, nogil=True, fastmath=_FASTMATH, error_model="numpy")(function)
-    finally:
-        numba.config.CACHE_DIR = previous
+def allocate(function: Function) -> Function:
+    """Compile a function that makes the arrays of a kernel."""
+    compiled: Function = numba.njit()(function)
     return compiled
 
 
 def inline(function: Function) -> Function:
-    """Compile a small function that is only called from kernels (it is cached as a part of them)."""
-    compiled: Function = numba.njit(fastmath=_FASTMATH, error_model="numpy")(function)
+    """Compile a function that only kernels call (it is cached as a part of them).
+
+    It must not allocate: without reference counting, calls and views of arrays cost nothing.
+    """
+    compiled: Function = numba.njit(fastmath=_FASTMATH, error_model="numpy", _nrt=False)(function)
     return compiled
 
 
 def also_compiled(function: Callable[..., Any]) -> None:
     """Let kernels call a plain Python function: it is compiled as a part of them."""
-    numba.extending.register_jitable(fastmath=_FASTMATH, error_model="numpy")(function)
+    numba.extending.register_jitable(**_LAW_OPTIONS)(function)
 
 
 def choose_by_type(generic: Callable[..., Any], implementations: dict[type, Callable[..., Any]]) -> None:
@@ -85,4 +130,4 @@ def choose_by_type(generic: Callable[..., Any], implementations: dict[type, Call
     def choose(law: Any, *arguments: Any) -> Callable[..., Any] | None:
         return implementations.get(getattr(law, "instance_class", type(None)))
 
-    overload(generic, strict=False, jit_options={"fastmath": _FASTMATH, "error_model": "numpy"})(choose)
+    overload(generic, strict=False, jit_options=_LAW_OPTIONS)(choose)

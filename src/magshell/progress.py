@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
-from magshell.compiled import is_compiled
 from magshell.linalg import make_solver
 from magshell.shell.loops import assemble
 from magshell.solver.events import Observer
@@ -67,7 +66,8 @@ class ProgressDisplay(Observer):
         elements, unknowns = len(discretisation.mesh.elements), discretisation.dofs
         solver = make_solver(settings.linear_solver).name
         self._line(f"{elements} elements, {unknowns} unknowns, linear solver: {solver}")
-        if not is_compiled(assemble):
+        model = discretisation.model
+        if not assemble.is_compiled(type(model.shell.material), type(model.coupling)):
             self._line("compiling the kernels for the first use of this version (about a minute) ...")
 
     def iterated(self, iteration: Iteration) -> None:

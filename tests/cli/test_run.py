@@ -184,7 +184,7 @@ def test_disk_that_refuses(
 
 
 def test_progress_on_a_terminal(strip: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("magshell.progress.is_compiled", lambda kernel: False)
+    monkeypatch.setattr("magshell.compiled.Kernel.is_compiled", lambda kernel, *laws: False)
     text = io.StringIO()
     display = ProgressDisplay(Console(file=text, force_terminal=True, width=160))
     with display:

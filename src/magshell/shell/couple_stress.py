@@ -2,9 +2,10 @@ r"""The couple stress at a point: ½ c^αβ κ_α · κ_β with c^αβ = gamma �
 
 With δκ = L δq̂,α + M δq̂ (rotation.py), m^α = c^αβ κ_β and n² = |q̂|²:
 
-    gradient   (q̂: Mᵀm, q̂,α: Lᵀm),      Hessian   (M L)ᵀ c (M L) + m^α · δ²κ_α.
+    gradient   q̂: M_αᵀ m^α,   q̂,α: Lᵀ m^α
+    Hessian    δκ_α · c^αβ δκ_β + m^α · δ²κ_α
 
-The last term comes from κ = 2 vec(q̂* q̂,α) / n²: its bilinear numerator, δq̂ · Z(m) δq̂,α, and the factor 1/n².
+where δ²κ_α comes from κ_α = 2 vec(q̂* q̂,α) / n²: its bilinear numerator, m · vec(δq̂* δq̂,α), and the factor 1/n².
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from __future__ import annotations
 from magshell.arrays import FloatArray
 from magshell.compiled import inline
 from magshell.shell.point import Q1, Q, Workspace
-from magshell.shell.rotation import wryness_maps
+from magshell.shell.rotation import LAST, NEXT, wryness_maps
 
 
 @inline
@@ -38,58 +39,58 @@ def couple_stress(
     """Add ½ c^αβ κ_α · κ_β: gradient and Hessian with respect to (q̂, q̂,1, q̂,2)."""
     q = x[Q : Q + 4]
     for a in range(2):
-        wryness_maps(q, x[Q1 + 4 * a : Q1 + 4 * a + 4], n2, w.L[a], w.M[a], w.kappa[a])
+        wryness_maps(q, x[Q1 + 4 * a : Q1 + 4 * a + 4], n2, w.L, w.M[a], w.kappa[a])
     for a in range(2):
         for i in range(3):
             w.stress[a, i] = modulus * (metric[a, 0] * w.kappa[0, i] + metric[a, 1] * w.kappa[1, i])
-    for a in range(2):
-        for i in range(3):
-            for c in range(4):
-                g[Q + c] += w.M[a, i, c] * w.stress[a, i]
-                g[Q1 + 4 * a + c] += w.L[a, i, c] * w.stress[a, i]
+    _add_gradient(w, g)
     if not tangent:
         return
     if mixed:
         for a in range(2):
             for i in range(3):
                 w.stress[a, i] = modulus * (metric[a, 0] * kappa_mixed[0, i] + metric[a, 1] * kappa_mixed[1, i])
-    for a in range(2):
+    _add_gradient(w, g_mixed)
+    L, M, M_c, two = w.L, w.M, w.M_c, 2.0 / n2
+    for b in range(2):
         for i in range(3):
-            for c in range(4):
-                g_mixed[Q + c] += w.M[a, i, c] * w.stress[a, i]
-                g_mixed[Q1 + 4 * a + c] += w.L[a, i, c] * w.stress[a, i]
-    for a in range(2):
-        for b in range(2):
-            c_ab = modulus * metric[a, b]
             for r in range(4):
-                for c in range(4):
-                    qq, qr, rr = 0.0, 0.0, 0.0
-                    for i in range(3):
-                        qq += w.M[a, i, r] * w.M[b, i, c]
-                        qr += w.M[a, i, r] * w.L[b, i, c]
-                        rr += w.L[a, i, r] * w.L[b, i, c]
-                    H[Q + r, Q + c] += c_ab * qq
-                    H[Q + r, Q1 + 4 * b + c] += c_ab * qr
-                    H[Q1 + 4 * b + c, Q + r] += c_ab * qr
-                    H[Q1 + 4 * a + r, Q1 + 4 * b + c] += c_ab * rr
-    two = 2.0 / n2
+                M_c[b, i, r] = modulus * (metric[0, b] * M[0, i, r] + metric[1, b] * M[1, i, r])
+    c_11, c_12, c_22 = modulus * metric[0, 0], modulus * metric[0, 1], modulus * metric[1, 1]
+    for r in range(4):
+        for c in range(4):
+            H[Q + r, Q + c] -= two * (q[r] * w.m_M[c] + w.m_M[r] * q[c])
+            for i in range(3):
+                H[Q + r, Q + c] += M_c[0, i, r] * M[0, i, c] + M_c[1, i, r] * M[1, i, c]
+            for b in range(2):
+                h = M_c[b, 0, r] * L[0, c] + M_c[b, 1, r] * L[1, c] + M_c[b, 2, r] * L[2, c]
+                _add_pair(H, Q + r, Q1 + 4 * b + c, h - two * q[r] * w.m_L[b, c])
+            h = L[0, r] * L[0, c] + L[1, r] * L[1, c] + L[2, r] * L[2, c]
+            H[Q1 + r, Q1 + c] += c_11 * h
+            H[Q1 + r, Q1 + 4 + c] += c_12 * h
+            H[Q1 + 4 + r, Q1 + c] += c_12 * h
+            H[Q1 + 4 + r, Q1 + 4 + c] += c_22 * h
     for a in range(2):
-        m = w.stress[a]
-        at = Q1 + 4 * a
-        # δq̂ · Z δr with m · vec(δq̂* δr) = δq̂ · Z δr
+        m, kappa, at = w.stress[a], w.kappa[a], Q1 + 4 * a
+        kappa_m = two * (kappa[0] * m[0] + kappa[1] * m[1] + kappa[2] * m[2])
+        for r in range(4):
+            H[Q + r, Q + r] -= kappa_m
         for i in range(3):
-            j, k = (i + 1) % 3, (i + 2) % 3
+            j, k = NEXT[i], LAST[i]
             _add_pair(H, Q, at + 1 + i, two * m[i])
             _add_pair(H, Q + 1 + i, at, -two * m[i])
             _add_pair(H, Q + 1 + k, at + 1 + j, two * m[i])
             _add_pair(H, Q + 1 + j, at + 1 + k, -two * m[i])
-        # derivatives of the factor 1/n²
-        kappa_m = w.kappa[a, 0] * m[0] + w.kappa[a, 1] * m[1] + w.kappa[a, 2] * m[2]
-        for r in range(4):
-            m_L = w.L[a, 0, r] * m[0] + w.L[a, 1, r] * m[1] + w.L[a, 2, r] * m[2]
-            m_M = w.M[a, 0, r] * m[0] + w.M[a, 1, r] * m[1] + w.M[a, 2, r] * m[2]
-            for c in range(4):
-                _add_pair(H, Q + c, at + r, -two * q[c] * m_L)
-                H[Q + r, Q + c] -= two * q[c] * m_M
-                H[Q + c, Q + r] -= two * q[c] * m_M
-            H[Q + r, Q + r] -= two * kappa_m
+
+
+@inline
+def _add_gradient(w: Workspace, g: FloatArray) -> None:
+    """Fill m_M = Σ M_αᵀ m^α and m_L = Lᵀ m^α of the couple stresses in w.stress, and add them to g."""
+    m = w.stress
+    for c in range(4):
+        w.m_M[c] = 0.0
+        for a in range(2):
+            w.m_M[c] += w.M[a, 0, c] * m[a, 0] + w.M[a, 1, c] * m[a, 1] + w.M[a, 2, c] * m[a, 2]
+            w.m_L[a, c] = w.L[0, c] * m[a, 0] + w.L[1, c] * m[a, 1] + w.L[2, c] * m[a, 2]
+            g[Q1 + 4 * a + c] += w.m_L[a, c]
+        g[Q + c] += w.m_M[c]

@@ -167,6 +167,12 @@ def add_radial_force(shape: Interpolation, p: int, g: FloatArray, v: FloatArray,
 
 
 @inline
+def padded(width: int) -> int:
+    """Row length, in whole vector registers of four numbers, for `width` columns."""
+    return (width + 3) // 4 * 4
+
+
+@inline
 def transpose(A: FloatArray, out: FloatArray) -> None:
     """Fill out with the first rows of Aᵀ."""
     for i in range(A.shape[0]):
@@ -180,7 +186,8 @@ def condense(
 ) -> bool:
     """Eliminate the unknowns from `size` on: Kᵀ and r condensed in place, Δα = -offset - gain Δv.
 
-    Gauss–Jordan with pivoting on [K_αα | K_αv | r_α], in `factor`; False where K_αα is singular.
+    Gauss–Jordan with pivoting on [K_αα | K_αv | r_α], in `factor`; False where K_αα is singular. The unknowns come in
+    vectors of three.
     """
     modes = Kt.shape[0] - size
     width = modes + size + 1
@@ -216,8 +223,9 @@ def condense(
             r[j] -= row[j] * offset[a]
     for j in range(size):
         row = Kt[j]
-        for a in range(modes):
-            eliminated, f = Kt[size + a], gain[a, j]
+        for a in range(0, modes, 3):
+            e0, e1, e2 = Kt[size + a], Kt[size + a + 1], Kt[size + a + 2]
+            f0, f1, f2 = gain[a, j], gain[a + 1, j], gain[a + 2, j]
             for i in range(size):
-                row[i] -= f * eliminated[i]
+                row[i] -= f0 * e0[i] + f1 * e1[i] + f2 * e2[i]
     return True

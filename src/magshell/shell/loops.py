@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
-from magshell.compiled import inline, jit
+from magshell.compiled import Kernel, inline
 from magshell.magnetics.law import Coupling
 from magshell.materials.law import Material
 from magshell.shell.element import (
@@ -19,6 +19,7 @@ from magshell.shell.element import (
     condense,
     contract,
     gather,
+    padded,
     point_values,
     spin_derivatives,
     transpose,
@@ -142,29 +143,34 @@ def _scatter_tangent(
     equations: Equations,
     Kt: FloatArray,
     imposed: FloatArray,
-    row_position: IntArray,
+    row_rank: IntArray,
+    position: IntArray,
     data: FloatArray,
     condensed: FloatArray,
 ) -> None:
     """Add the element's tangent to the matrix, and its product with imposed increments to `condensed`."""
     size = equations.local_node.size
-    for column in range(size):
-        J, component = equations.local_node[column], equations.local_component[column]
-        number = equations.number[nodes[J], component]
-        K_column = Kt[column]
-        if number >= 0:
-            start, offset = equations.indptr[number], equations.offset[e, J]
-            for row in range(size):
-                position = row_position[row]
-                if position >= 0:
-                    data[start + offset[equations.local_node[row]] + position] += K_column[row]
-        elif imposed[nodes[J], component] != 0.0:
-            for row in range(size):
-                I, row_component = equations.local_node[row], equations.local_component[row]
-                condensed[nodes[I], row_component] += K_column[row] * imposed[nodes[J], component]
+    for J in range(nodes.size):
+        for row in range(size):
+            if row_rank[row] >= 0:
+                position[row] = equations.offset[e, J, equations.local_node[row]] + row_rank[row]
+        for column in range(size):
+            if equations.local_node[column] != J:
+                continue
+            component, K_column = equations.local_component[column], Kt[column]
+            number = equations.number[nodes[J], component]
+            if number >= 0:
+                start = equations.indptr[number]
+                for row in range(size):
+                    if row_rank[row] >= 0:
+                        data[start + position[row]] += K_column[row]
+            elif imposed[nodes[J], component] != 0.0:
+                for row in range(size):
+                    I, row_component = equations.local_node[row], equations.local_component[row]
+                    condensed[nodes[I], row_component] += K_column[row] * imposed[nodes[J], component]
 
 
-@jit
+@Kernel
 def assemble(
     material: Material,
     couple_modulus: float,
@@ -187,16 +193,17 @@ def assemble(
     nodal = size - 3 * modes
     spins = 3 * count + 4 * rest
     v, x, w, T, radial = np.zeros(full), np.zeros(SIZE), workspace(), np.zeros((rest, 4, 3)), np.zeros(rest)
-    g, g_mixed, H = np.zeros((SIZE, 2)), np.zeros(SIZE), np.zeros((SIZE, SIZE))
-    scratch, scratch_2 = np.zeros((4, size)), np.zeros((4, 2))
+    narrow, wide = padded(SIZE), padded(size)
+    g, g_mixed, H = np.zeros((SIZE, 2)), np.zeros(SIZE), np.zeros((SIZE, narrow))
+    scratch, scratch_2 = np.zeros((4, wide)), np.zeros((4, 2))
     GH, HG, Kt, r = (
-        np.zeros((size, SIZE)),
-        np.zeros((SIZE, size)),
-        np.zeros((size, size)),
+        np.zeros((size, narrow)),
+        np.zeros((SIZE, wide)),
+        np.zeros((size, wide)),
         np.zeros((size, 2)),
     )
     r_sum, factor = np.zeros(size), np.zeros((3 * modes, 3 * modes + nodal + 1))
-    row_position = np.zeros(nodal, dtype=np.int64)
+    row_rank, position = np.zeros(nodal, dtype=np.int64), np.zeros(nodal, dtype=np.int64)
     kind_of = equations.local_component
     if tangent:
         out.data[:] = 0.0
@@ -257,9 +264,9 @@ def assemble(
         if tangent:
             for l in range(nodal):
                 node, c = nodes[equations.local_node[l]], kind_of[l]
-                row_position[l] = equations.rank[node, c] if equations.number[node, c] >= 0 else -1
+                row_rank[l] = equations.rank[node, c] if equations.number[node, c] >= 0 else -1
                 out.condensed[node, c] += r[l, 1]
-            _scatter_tangent(e, nodes, equations, Kt, imposed, row_position, out.data, out.condensed)
+            _scatter_tangent(e, nodes, equations, Kt, imposed, row_rank, position, out.data, out.condensed)
     return -1, 1.0
 
 
@@ -276,7 +283,7 @@ def _gather_increment(nodes: IntArray, increment: FloatArray, count: int, rest: 
         dv[3 * count + 3 * rest + n] = increment[nodes[n], 6]
 
 
-@jit
+@Kernel
 def recover_enhancement(
     elements: IntArray,
     rest: int,
@@ -299,7 +306,7 @@ def recover_enhancement(
                 d_alpha[e, m, i] = -s
 
 
-@jit
+@Kernel
 def predict_stresses(
     material: Material,
     body: Body,

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.compiled import inline
+from magshell.compiled import allocate
 
 SIZE = 31
 U1, W1, W, ENHANCED, PHI, Q, Q1 = 0, 6, 12, 15, 18, 19, 23
@@ -35,11 +35,15 @@ class Workspace(NamedTuple):
     H_ωω: FloatArray
     L: FloatArray
     M: FloatArray
+    M_c: FloatArray
+    m_L: FloatArray
+    m_M: FloatArray
     kappa: FloatArray
     stress: FloatArray
+    couples: FloatArray
 
 
-@inline
+@allocate
 def workspace() -> Workspace:
     """Allocate the scratch arrays."""
     return Workspace(
@@ -60,8 +64,12 @@ def workspace() -> Workspace:
         np.zeros((Q, 3)),
         np.zeros((3, Q)),
         np.zeros((3, 3)),
+        np.zeros((3, 4)),
         np.zeros((2, 3, 4)),
         np.zeros((2, 3, 4)),
+        np.zeros((2, 4)),
+        np.zeros(4),
         np.zeros((2, 3)),
         np.zeros((2, 3)),
+        np.zeros((3, 3)),
     )

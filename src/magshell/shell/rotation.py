@@ -17,6 +17,9 @@ import numpy as np
 from magshell.arrays import FloatArray
 from magshell.compiled import inline
 
+# the other two axes, in cyclic order
+NEXT, LAST = (1, 2, 0), (2, 0, 1)
+
 
 def identity(count: int) -> FloatArray:
     """Quaternions (count, 4) of no rotation."""
@@ -77,7 +80,7 @@ def rotation_matrix(q: FloatArray, R: FloatArray) -> float:
     n2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]
     two = 2.0 / n2
     for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
+        j, k = NEXT[i], LAST[i]
         R[i, i] = 1.0 - two * (q[1 + j] * q[1 + j] + q[1 + k] * q[1 + k])
         R[j, i] = two * (q[1 + i] * q[1 + j] + q[0] * q[1 + k])
         R[i, j] = two * (q[1 + i] * q[1 + j] - q[0] * q[1 + k])
@@ -88,7 +91,7 @@ def rotation_matrix(q: FloatArray, R: FloatArray) -> float:
 def spin_map(q: FloatArray, n2: float, V: FloatArray) -> None:
     """Fill V (3, 4): v = vec(δq̂ q̂*) / n²."""
     for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
+        j, k = NEXT[i], LAST[i]
         V[i, 0] = -q[1 + i] / n2
         V[i, 1 + i] = q[0] / n2
         V[i, 1 + k] = q[1 + j] / n2
@@ -100,7 +103,7 @@ def wryness_maps(q: FloatArray, r: FloatArray, n2: float, L: FloatArray, M: Floa
     """Fill L, M (3, 4) and κ (3,): κ = 2 vec(q̂* r) / n², δκ = L δr + M δq̂ for r = q̂,α."""
     two = 2.0 / n2
     for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
+        j, k = NEXT[i], LAST[i]
         L[i, 0] = -two * q[1 + i]
         L[i, 1 + i] = two * q[0]
         L[i, 1 + k] = -two * q[1 + j]

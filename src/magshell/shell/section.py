@@ -36,7 +36,7 @@ from magshell.shell.couple_stress import couple_stress
 from magshell.shell.geometry import SectionGeometry
 from magshell.shell.kinematics import base_vectors, moduli_on_legs, stress_vectors, stretch
 from magshell.shell.point import ENHANCED, PHI, Q1, U1, W1, Q, W, Workspace
-from magshell.shell.rotation import rotation_matrix, spin_map, wryness_maps
+from magshell.shell.rotation import LAST, NEXT, rotation_matrix, spin_map, wryness_maps
 
 
 def _stress_and_tangent(material: Material, U: FloatArray, P: FloatArray, C: FloatArray) -> None:
@@ -77,7 +77,7 @@ def _level_hessian(w: Workspace, c_ω: FloatArray) -> None:
     for a in range(3):
         dot = g[a, 0] * t[a, 0] + g[a, 1] * t[a, 1] + g[a, 2] * t[a, 2]
         for i in range(3):
-            j, k = (i + 1) % 3, (i + 2) % 3
+            j, k = NEXT[i], LAST[i]
             for l in range(3):
                 w.H_ωω[i, l] += w.K_gω[a, j, l] * g[a, k] - w.K_gω[a, k, l] * g[a, j]
                 w.H_ωω[i, l] += 0.5 * (g[a, i] * t[a, l] + t[a, i] * g[a, l])
@@ -85,7 +85,7 @@ def _level_hessian(w: Workspace, c_ω: FloatArray) -> None:
             c_ω[i] -= g[a, j] * t[a, k] - g[a, k] * t[a, j]
     for a in range(3):
         for i in range(3):
-            j, k = (i + 1) % 3, (i + 2) % 3
+            j, k = NEXT[i], LAST[i]
             w.K_gω[a, k, j] -= t[a, i]
             w.K_gω[a, j, k] += t[a, i]
 
@@ -195,7 +195,8 @@ def section(
     rem = remanence[e, p]
     for i in range(3):
         n[i] = w.R[i, 0] * rem[0] + w.R[i, 1] * rem[1] + w.R[i, 2] * rem[2]
-    couple, couple_magnetic, couple_mixed = np.zeros(3), np.zeros(3), np.zeros(3)
+    couple, couple_magnetic, couple_mixed = w.couples[0], w.couples[1], w.couples[2]
+    w.couples[:, :] = 0.0
     least = np.inf
     for k in range(geometry.z.size):
         z, volume, G = geometry.z[k], geometry.volume[e, p, k], geometry.G[e, p, k]
@@ -217,7 +218,7 @@ def section(
             _add_stress_vector(g[:, 0], i, z, x[PHI], w.t[0, i], w.t[1, i], w.t[2, i], d2z[i])
             f_i = volume * f[i]
             _add_stress_vector(g[:, 1], i, z, x[PHI], b[0] * f_i, b[1] * f_i, b[2] * f_i, d2z[i])
-            j, l = (i + 1) % 3, (i + 2) % 3
+            j, l = NEXT[i], LAST[i]
             for a in range(3):
                 couple[i] -= w.g[a, j] * w.t[a, l] - w.g[a, l] * w.t[a, j]
         if tangent:
@@ -307,9 +308,9 @@ def predicted_stress(
                 P_mixed[k, i, j] = value
     for a in range(2):
         at = Q1 + 4 * a
-        wryness_maps(q, x[at : at + 4], n2, w.L[a], w.M[a], w.kappa[a])
+        wryness_maps(q, x[at : at + 4], n2, w.L, w.M[a], w.kappa[a])
         for i in range(3):
             value = w.kappa[a, i]
             for r in range(4):
-                value += w.L[a, i, r] * dx[at + r] + w.M[a, i, r] * dq[r]
+                value += w.L[i, r] * dx[at + r] + w.M[a, i, r] * dq[r]
             kappa_mixed[a, i] = value
