@@ -157,7 +157,7 @@ def mesh_table(gripper: ms.Path) -> str:
         mesh = ms.mesh.sphere_patch(radius, (15, 165), (-15, 15), (along, around))
         arm = ms.Shell(mesh, shell.thickness, shell.material, shell.remanence)
         path = ms.solve(ms.Model(arm, [ms.Clamp("top")], field, probes={"B": (radius, 0, 0)}))
-        values = (f"{displacement(path, 'B', 3, each):.4g}" for each in fields)
+        values = (f"{displacement(path, 'B', 3, each):#.4g}" for each in fields)
         rows.append(f"| {along} × {around} | {path.discretisation.dofs} | {' | '.join(values)} |")
     return "\n".join(rows)
 
