@@ -44,7 +44,7 @@ class Assembly(NamedTuple):
     Attributes
     ----------
     matrix : csc_array or None
-        Condensed tangent of the free unknowns.
+        Condensed tangent of the free unknowns; the next assembly overwrites its values.
     right_side : ndarray, shape (dofs,)
         Minus the condensed residual and the imposed increments' share.
     residual : ndarray, shape (nodes, 10)
@@ -116,6 +116,10 @@ class Discretisation:
             np.zeros((elements, 3 * self.modes)),
             np.zeros((len(_COLUMNS), 2)),
             np.zeros(1),
+        )
+        self._matrix = sp.csc_array(
+            (self._out.data, self.pattern.indices, self.pattern.indptr.astype(self.pattern.indices.dtype)),
+            shape=(self.dofs, self.dofs),
         )
 
     def _number_equations(self, ordering: Ordering) -> None:
@@ -235,7 +239,7 @@ class Discretisation:
         matrix = None
         if tangent:
             right_side[self._free_index] = -out.condensed[self.free]
-            matrix = sp.csc_array((out.data, self.pattern.indices, self.pattern.indptr), shape=(self.dofs, self.dofs))
+            matrix = self._matrix
         return Assembly(matrix, right_side, out.residual.copy(), self._relative_residual())
 
     def _relative_residual(self) -> dict[str, float]:

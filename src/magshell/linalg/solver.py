@@ -36,6 +36,9 @@ class LinearSolver(Protocol):
         SingularMatrix
         """
 
+    def refactorise(self) -> None:
+        """Factorise the last matrix again, already scaled: the library's work alone, for measurements."""
+
     def solve(self, right_side: FloatArray) -> FloatArray:
         """Solution of the factorised system."""
 
@@ -65,6 +68,9 @@ class _Equilibrated:
         return sp.csc_array((data, matrix.indices, matrix.indptr), shape=matrix.shape)
 
 
+_SYMMETRIC = {"SymmetricMode": True}
+
+
 class SuperLU(_Equilibrated):
     """SuperLU of SciPy on equations that are already in nested-dissection order; pivots stay on the diagonal."""
 
@@ -72,14 +78,17 @@ class SuperLU(_Equilibrated):
 
     def factorise(self, matrix: sp.csc_array) -> None:
         """See `LinearSolver`."""
+        self._matrix = self._scaled(matrix)
+        self.refactorise()
+
+    def refactorise(self) -> None:
+        """See `LinearSolver`."""
         from scipy.sparse.linalg import splu
 
-        scaled = self._scaled(matrix)
-        options = {"SymmetricMode": True}
         try:
-            self._factors = splu(scaled, permc_spec="NATURAL", diag_pivot_thresh=0.001, options=options)
+            self._factors = splu(self._matrix, permc_spec="NATURAL", diag_pivot_thresh=0.001, options=_SYMMETRIC)
         except RuntimeError:
-            shifted = scaled + 1e-10 * sp.eye_array(scaled.shape[0], format="csc")
+            shifted = self._matrix + 1e-10 * sp.eye_array(self._matrix.shape[0], format="csc")
             self._factors = splu(sp.csc_array(shifted), permc_spec="NATURAL", diag_pivot_thresh=1.0)
             raise SingularMatrix(self._null_vector()) from None
 
@@ -114,9 +123,13 @@ class Pardiso(_Equilibrated):
         """See `LinearSolver`. The compressed columns are handed over as rows of the transpose."""
         scaled = self._scaled(matrix)
         self._matrix = sp.csr_matrix((scaled.data, scaled.indices, scaled.indptr), shape=scaled.shape)
+        self.refactorise()
+
+    def refactorise(self) -> None:
+        """See `LinearSolver`."""
         self._pardiso.set_phase(22 if self._analysed else 12)
         self._pardiso._check_A(self._matrix)
-        self._pardiso._call_pardiso(self._matrix, np.zeros((scaled.shape[0], 1)))
+        self._pardiso._call_pardiso(self._matrix, np.zeros((self._matrix.shape[0], 1)))
         self._analysed = True
 
     def solve(self, right_side: FloatArray) -> FloatArray:

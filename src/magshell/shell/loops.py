@@ -137,37 +137,51 @@ def _turn_rows(nodes: IntArray, equations: Equations, rest: int, rows: FloatArra
 
 
 @inline
+def _value(component: int, node: int, count: int, rest: int) -> int:
+    """Place of a node's component among the element's values."""
+    return component * count + node if component < 3 else 3 * count + (component - 3) * rest + node
+
+
+@inline
 def _scatter_tangent(
     e: int,
     nodes: IntArray,
     equations: Equations,
+    rest: int,
     Kt: FloatArray,
     imposed: FloatArray,
-    row_rank: IntArray,
-    position: IntArray,
     data: FloatArray,
     condensed: FloatArray,
 ) -> None:
-    """Add the element's tangent to the matrix, and its product with imposed increments to `condensed`."""
-    size = equations.local_node.size
-    for J in range(nodes.size):
-        for row in range(size):
-            if row_rank[row] >= 0:
-                position[row] = equations.offset[e, J, equations.local_node[row]] + row_rank[row]
-        for column in range(size):
-            if equations.local_node[column] != J:
+    """Add the element's tangent to the matrix, and its product with imposed increments to `condensed`.
+
+    The rows of one node lie side by side in a column.
+    """
+    count = nodes.size
+    for J in range(count):
+        for component in range(COMPONENTS if J < rest else 3):
+            number, K = equations.number[nodes[J], component], Kt[_value(component, J, count, rest)]
+            if number < 0:
+                if imposed[nodes[J], component] != 0.0:
+                    for I in range(count):
+                        for c in range(COMPONENTS if I < rest else 3):
+                            condensed[nodes[I], c] += K[_value(c, I, count, rest)] * imposed[nodes[J], component]
                 continue
-            component, K_column = equations.local_component[column], Kt[column]
-            number = equations.number[nodes[J], component]
-            if number >= 0:
-                start = equations.indptr[number]
-                for row in range(size):
-                    if row_rank[row] >= 0:
-                        data[start + position[row]] += K_column[row]
-            elif imposed[nodes[J], component] != 0.0:
-                for row in range(size):
-                    I, row_component = equations.local_node[row], equations.local_component[row]
-                    condensed[nodes[I], row_component] += K_column[row] * imposed[nodes[J], component]
+            start = equations.indptr[number]
+            for I in range(count):
+                at, rank = start + equations.offset[e, J, I], equations.rank[nodes[I]]
+                if I < rest and rank[COMPONENTS - 1] == COMPONENTS - 1:
+                    for c in range(3):
+                        data[at + c] += K[c * count + I]
+                    for c in range(COMPONENTS - 3):
+                        data[at + 3 + c] += K[3 * count + c * rest + I]
+                elif I >= rest and rank[2] == 2:
+                    for c in range(3):
+                        data[at + c] += K[c * count + I]
+                else:
+                    for c in range(COMPONENTS if I < rest else 3):
+                        if equations.number[nodes[I], c] >= 0:
+                            data[at + rank[c]] += K[_value(c, I, count, rest)]
 
 
 @Kernel
@@ -203,7 +217,6 @@ def assemble(
         np.zeros((size, 2)),
     )
     r_sum, factor = np.zeros(size), np.zeros((3 * modes, 3 * modes + nodal + 1))
-    row_rank, position = np.zeros(nodal, dtype=np.int64), np.zeros(nodal, dtype=np.int64)
     kind_of = equations.local_component
     if tangent:
         out.data[:] = 0.0
@@ -263,10 +276,8 @@ def assemble(
             out.residual[nodes[equations.local_node[l]], kind_of[l]] += r[l, 0]
         if tangent:
             for l in range(nodal):
-                node, c = nodes[equations.local_node[l]], kind_of[l]
-                row_rank[l] = equations.rank[node, c] if equations.number[node, c] >= 0 else -1
-                out.condensed[node, c] += r[l, 1]
-            _scatter_tangent(e, nodes, equations, Kt, imposed, row_rank, position, out.data, out.condensed)
+                out.condensed[nodes[equations.local_node[l]], kind_of[l]] += r[l, 1]
+            _scatter_tangent(e, nodes, equations, rest, Kt, imposed, out.data, out.condensed)
     return -1, 1.0
 
 
