@@ -1,0 +1,1 @@
+"""Newton's method, load stepping and what they say when they fail."""

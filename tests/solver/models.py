@@ -1,0 +1,99 @@
+"""Small shells, and a record of what a solve tells its observers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+import magshell as ms
+from magshell import Model, Observer, Path, Step
+from magshell.assembly import Discretisation
+from magshell.linalg import make_solver
+from magshell.shell.state import State
+
+LENGTH, WIDTH, THICKNESS = 11e-3, 5e-3, 1.1e-3
+MU, LAMBDA = 303e3, 7300e3
+
+
+def rubber(thickness: float = THICKNESS, coupling: float = 0.1, length: float = 0.1) -> ms.MicropolarNeoHookean:
+    """The strips' material; coupling modulus in mu, length scale in thicknesses."""
+    return ms.MicropolarNeoHookean(MU, LAMBDA, coupling * MU, length * thickness)
+
+
+def strip(
+    elements: tuple[int, int] = (4, 1),
+    supports: Sequence[Any] | None = None,
+    field: Sequence[float] = (0.0, 0.0, 20e-3),
+    stops: Sequence[float] = (),
+    remanence: Sequence[float] = (143e-3, 0.0, 0.0),
+    material: Any = None,
+) -> Model:
+    """A thick strip, clamped on the left and turned up by the field unless told otherwise; probe `tip`."""
+    mesh = ms.mesh.rectangle(LENGTH, WIDTH, elements)
+    shell = ms.Shell(mesh, THICKNESS, material or rubber(), ms.remanence.constant(remanence))
+    held = [ms.Clamp("left")] if supports is None else supports
+    return Model(shell, held, ms.UniformField(field, stops), probes={"tip": (LENGTH, 0, 0)})
+
+
+def arm(elements: tuple[int, int] = (6, 2), field: float = 10e-3, stops: Sequence[float] = (), **options: Any) -> Model:
+    """A gripper's arm in a coarse mesh: part of a sphere, clamped near the pole, magnetised along its meridians."""
+    mesh = ms.mesh.sphere_patch(22.918e-3, polar=(15, 165), azimuth=(-15, 15), elements=elements)
+    material = ms.MicropolarNeoHookean(135e3, 3.25e6, 13.5e3, 9e-5)
+    shell = ms.Shell(mesh, 0.9e-3, material, ms.remanence.meridional(94e-3))
+    return Model(shell, [ms.Clamp("top")], ms.UniformField([0, 0, field], stops), **options)
+
+
+def contents(state: State) -> bytes:
+    """All values of a state."""
+    return b"".join(np.ascontiguousarray(values).tobytes() for values in state)
+
+
+def last_correction(path: Path) -> float:
+    """Largest change of u by one more Newton iteration, m: the error of the last state, to first order."""
+    discretisation, step = path.discretisation, path.steps[-1]
+    assembly = discretisation.assemble(step.state, step.load_factor)
+    assert assembly.matrix is not None
+    solver = make_solver("superlu")
+    solver.factorise(assembly.matrix)
+    return float(np.abs(discretisation.expand(solver.solve(assembly.right_side))[:, :3]).max())
+
+
+def equation_numbers(discretisation: Discretisation) -> np.ndarray:
+    """Equation of each nodal component, shape (nodes, 10); -1 where it is held or absent."""
+    return discretisation.expand(np.arange(1.0, discretisation.dofs + 1.0)).astype(int) - 1
+
+
+class Record(Observer):
+    """Names of the calls in order, their arguments, and the bytes of every converged state."""
+
+    def __init__(self) -> None:
+        self.calls: list[str] = []
+        self.iterations: list[Any] = []
+        self.steps: list[Step] = []
+        self.bytes: list[bytes] = []
+        self.cuts: list[tuple[float, str]] = []
+        self.path: Path | None = None
+
+    def started(self, discretisation: Any, settings: Any) -> None:
+        self.calls.append("started")
+        self.discretisation, self.settings = discretisation, settings
+
+    def iterated(self, iteration: Any) -> None:
+        self.calls.append("iterated")
+        self.iterations.append(iteration)
+
+    def converged(self, step: Step) -> None:
+        self.calls.append("converged")
+        self.steps.append(step)
+        self.bytes.append(contents(step.state))
+
+    def cut(self, load_factor: float, reason: str) -> None:
+        self.calls.append("cut")
+        self.cuts.append((load_factor, reason))
+        assert contents(self.steps[-1].state) == self.bytes[-1], f"the cut at {load_factor} changed the last state"
+
+    def finished(self, path: Path) -> None:
+        self.calls.append("finished")
+        self.path = path

@@ -1,0 +1,147 @@
+"""Problems that cannot be solved say so, in the user's terms, with everything reached so far."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import magshell as ms
+from magshell import InputError, Settings, SolveError, solve
+from magshell.assembly import Discretisation
+from magshell.linalg import SingularMatrix, make_solver, nested_dissection
+from magshell.solver.newton import StepFailure, Trial, newton
+from solver.models import LENGTH, Record, contents, equation_numbers, rubber, strip
+
+
+def failure(model: ms.Model, settings: Settings) -> tuple[SolveError, Record]:
+    """The error of a solve, after what holds for every failed one was checked."""
+    record = Record()
+    with pytest.raises(SolveError) as caught:
+        solve(model, settings, [record])
+    error = caught.value
+    path = error.path
+    assert str(error) == error.reason == path.reason
+    assert not path.converged
+    assert path is record.path
+    assert record.calls[-2:] == ["cut", "finished"]
+    assert [contents(step.state) for step in path.steps] == record.bytes
+    assert path.steps[-1].load_factor < 1.0
+    assert all(step.residual <= settings.tolerance for step in path.steps[1:])
+    assert path.cuts == len(record.cuts) > 0
+    assert path.summary["converged"] is False
+    return error, record
+
+
+def test_absurd_field_fails_at_once() -> None:
+    error, _ = failure(strip(field=(0, 0, 5.0)), Settings(first_step=0.01, smallest_step=0.005))
+    assert len(error.path.steps) == 1
+    for part in ("stopped at load factor 0 (0 mT)", "step to 0.01", "element", "turned inside out", "unit slip"):
+        assert part in error.reason, error.reason
+
+
+def test_steps_before_the_failure_are_kept() -> None:
+    """5 T in steps of 2 mT is slow but possible; a step control that grows by too much must not be cut at all."""
+    hasty = Settings(first_step=4e-4, smallest_step=4e-4, target_iterations=12)
+    error, _ = failure(strip(field=(0, 0, 5.0)), hasty)
+    assert [step.load_factor for step in error.path.steps] == [0.0, 4e-4]
+    assert "stopped at load factor 0.0004 (2 mT)" in error.reason, error.reason
+    tip = error.path.probe("tip")
+    assert tip.u3[-1] == pytest.approx(solve(strip(field=(0, 0, 2e-3))).probe("tip").u3[-1], rel=1e-6)
+
+
+def test_strip_cannot_be_squashed_to_nothing() -> None:
+    supports = [ms.Clamp("left"), ms.Prescribe("right", "u", 1, -LENGTH)]
+    error, record = failure(strip(supports=supports, field=(0, 0, 0)), Settings(smallest_step=0.005))
+    reached = error.path.steps[-1].load_factor
+    assert 0.3 < reached < 1.0, reached
+    assert f"stopped at load factor {reached:.6g}" in error.reason, error.reason
+    assert f"after {len(record.cuts)} cuts" in error.reason, error.reason
+    assert "Likely causes" in error.reason, error.reason
+
+
+class Singular:
+    """A linear solver that finds every matrix singular, in a given direction."""
+
+    name = "singular"
+
+    def __init__(self, direction: np.ndarray) -> None:
+        self.direction = direction
+
+    def factorise(self, matrix):
+        raise SingularMatrix(self.direction)
+
+    def solve(self, right_side):
+        raise AssertionError("there are no factors")
+
+
+@pytest.mark.parametrize(("column", "name"), [(0, "u1"), (2, "u3"), (4, "w2"), (6, "phi"), (8, "omega2")])
+def test_singular_direction_is_named(column: int, name: str) -> None:
+    model = strip()
+    discretisation = Discretisation(model, nested_dissection)
+    tip = model.probe_nodes["tip"]
+    direction = np.zeros(discretisation.dofs)
+    direction[equation_numbers(discretisation)[tip, column]] = 1.0
+    start = discretisation.undeformed()
+    trial = Trial(start, discretisation.stresses_at(start), None)
+    with pytest.raises(StepFailure) as caught:
+        newton(discretisation, Singular(direction), trial, 0.1, Settings(), lambda *_: None)
+    expected = f"the free direction is largest in {name} of node {tip} at (11, 0, 0) mm"
+    assert expected in str(caught.value), str(caught.value)
+
+
+@pytest.mark.xfail(strict=True, reason="a tangent that is singular but for round-off is not recognised as singular")
+def test_micro_rotation_that_nothing_ties_is_named() -> None:
+    """Without coupling modulus, and no support that holds rotations, the micro-rotation turns freely as a whole."""
+    supports = [ms.SimpleSupport("left"), ms.SimpleSupport("right")]
+    model = strip(supports=supports, material=rubber(coupling=0.0))
+    with pytest.raises(SolveError, match=r"singular.*omega"):
+        solve(model, Settings(smallest_step=0.002))
+
+
+def two_parts() -> ms.mesh.Mesh:
+    """Two separate squares."""
+    squares = {
+        "one": np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * 1e-2,
+        "two": np.array([[2, 0], [3, 0], [3, 1], [2, 1]]) * 1e-2,
+    }
+    return ms.mesh.blocks(squares, (2, 2)).select_edges("hold", x1=0)
+
+
+@pytest.mark.parametrize(
+    ("supports", "said"),
+    [
+        ([], "the body floats freely"),
+        ([ms.Prescribe("left", "phi", value=0.0)], "the body floats freely"),
+        ([ms.SimpleSupport("left")], "rotation about X2"),
+        ([ms.SymmetryPlane("left", (1, 0, 0)), ms.SymmetryPlane("bottom", (0, 1, 0))], "translation along X3"),
+        ([ms.Prescribe("left", "u", 3, 0.0), ms.Prescribe("right", "u", 3, 0.0)], "translation along X1"),
+    ],
+)
+def test_free_motion_is_named(supports: list[object], said: str) -> None:
+    with pytest.raises(InputError, match="supports: ") as caught:
+        strip(supports=supports)
+    assert said in str(caught.value), str(caught.value)
+
+
+def test_free_motions_are_all_named() -> None:
+    with pytest.raises(InputError) as caught:
+        strip(supports=[ms.SymmetryPlane("left", (1, 0, 0))])
+    for motion in ("translation along X2", "translation along X3", "rotation about X1"):
+        assert motion in str(caught.value), str(caught.value)
+
+
+def test_part_that_floats_is_named() -> None:
+    shell = ms.Shell(two_parts(), 1e-3, rubber(), ms.remanence.constant([0.1, 0, 0]))
+    with pytest.raises(InputError, match=r"part 2 of 2 .* floats freely"):
+        ms.Model(shell, [ms.Clamp("hold")], ms.UniformField([0, 0, 1e-3]))
+
+
+def test_load_that_does_nothing() -> None:
+    with pytest.raises(InputError, match="flux_density is zero and no support moves"):
+        strip(field=(0, 0, 0))
+    with pytest.raises(InputError, match="remanence: it is zero everywhere and no support moves"):
+        strip(remanence=(0, 0, 0))
+
+
+def test_make_solver_is_the_one_in_use() -> None:
+    assert solve(strip((2, 1))).solver_name == make_solver("superlu").name
