@@ -141,11 +141,12 @@ def _bounded(*divisions: tuple[int, int]) -> None:
 
 
 def _material(table: schema.Material, thickness: float) -> Material:
+    eta, length = table.coupling_modulus, table.length_scale
     parameters = {
         "shear_modulus": table.shear_modulus,
         "lame_lambda": table.lame_lambda,
-        "coupling_modulus": table.coupling_modulus or table.shear_modulus / 10.0,
-        "length_scale": table.length_scale or thickness / 10.0,
+        "coupling_modulus": table.shear_modulus / 10.0 if eta is None else eta,
+        "length_scale": thickness / 10.0 if length is None else length,
     }
     if isinstance(table, schema.MooneyRivlin):
         return materials.MicropolarMooneyRivlin(**parameters, second_invariant_share=table.second_invariant_share)

@@ -25,7 +25,7 @@ class SectionGeometry(NamedTuple):
     z : ndarray, shape (k,)
         Levels, m.
     G : ndarray, shape (elements, p, k, 3, 3)
-        Contravariant base at the level, G^i = Q⁻¹ A^i, Q = I - z B; rows G^1, G^2, G^3; 1/m.
+        Dual of (A_1 + z D,1, A_2 + z D,2, D): G^i = Q⁻¹ A^i with the shifter Q = I - z B; rows, 1/m.
     volume : ndarray, shape (elements, p, k)
         det Q √A times all weights, m³.
     metric : ndarray, shape (elements, p, 2, 2)

@@ -2,74 +2,51 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, TypeAlias
 
 import numpy as np
 
-from magshell.arrays import FloatArray
+from magshell.arrays import AnyArray
 from magshell.compiled import allocate
 
 SIZE = 31
 U1, W1, W, ENHANCED, PHI, Q, Q1 = 0, 6, 12, 15, 18, 19, 23
 
 
-class Workspace(NamedTuple):
-    """Scratch arrays of one thread."""
-
-    R: FloatArray
-    V: FloatArray
-    g: FloatArray
-    U: FloatArray
-    P: FloatArray
-    C: FloatArray
-    C_half: FloatArray
-    t: FloatArray
-    t_mixed: FloatArray
-    vectors: FloatArray
-    K_m: FloatArray
-    K_ω: FloatArray
-    K_g: FloatArray
-    K_gω: FloatArray
-    H_gω: FloatArray
-    H_ωg: FloatArray
-    H_ωω: FloatArray
-    L: FloatArray
-    M: FloatArray
-    M_c: FloatArray
-    m_L: FloatArray
-    m_M: FloatArray
-    kappa: FloatArray
-    stress: FloatArray
-    couples: FloatArray
+#: Scratch arrays of one thread: a record, so that they are passed as one pointer and their shapes are known.
+WORKSPACE = np.dtype(
+    [
+        ("R", float, (3, 3)),
+        ("V", float, (3, 4)),
+        ("g", float, (3, 3)),
+        ("U", float, (3, 3)),
+        ("P", float, (3, 3)),
+        ("C", float, (3, 3, 3, 3)),
+        ("C_half", float, (3, 3, 3, 3)),
+        ("t", float, (3, 3)),
+        ("t_mixed", float, (3, 3)),
+        ("vectors", float, (6, 3)),
+        ("K_m", float, (3, 3)),
+        ("K_ω", float, (3, 3)),
+        ("K_g", float, (3, 3, 3, 3)),
+        ("K_gω", float, (3, 3, 3)),
+        ("H_gω", float, (Q, 3)),
+        ("H_ωg", float, (3, Q)),
+        ("H_ωω", float, (3, 3)),
+        ("L", float, (3, 4)),
+        ("M", float, (2, 3, 4)),
+        ("M_c", float, (2, 3, 4)),
+        ("m_L", float, (2, 4)),
+        ("m_M", float, (4,)),
+        ("kappa", float, (2, 3)),
+        ("stress", float, (2, 3)),
+        ("couples", float, (3, 3)),
+    ]
+)
+Workspace: TypeAlias = Any
 
 
 @allocate
-def workspace() -> Workspace:
-    """Allocate the scratch arrays."""
-    return Workspace(
-        np.zeros((3, 3)),
-        np.zeros((3, 4)),
-        np.zeros((3, 3)),
-        np.zeros((3, 3)),
-        np.zeros((3, 3)),
-        np.zeros((3, 3, 3, 3)),
-        np.zeros((3, 3, 3, 3)),
-        np.zeros((3, 3)),
-        np.zeros((3, 3)),
-        np.zeros((6, 3)),
-        np.zeros((3, 3)),
-        np.zeros((3, 3)),
-        np.zeros((3, 3, 3, 3)),
-        np.zeros((3, 3, 3)),
-        np.zeros((Q, 3)),
-        np.zeros((3, Q)),
-        np.zeros((3, 3)),
-        np.zeros((3, 4)),
-        np.zeros((2, 3, 4)),
-        np.zeros((2, 3, 4)),
-        np.zeros((2, 4)),
-        np.zeros(4),
-        np.zeros((2, 3)),
-        np.zeros((2, 3)),
-        np.zeros((3, 3)),
-    )
+def workspace() -> AnyArray:
+    """One cleared record, in an array: that is what must be passed on, a record alone does not keep its memory."""
+    return np.zeros(1, dtype=WORKSPACE)

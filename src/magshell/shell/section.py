@@ -15,7 +15,7 @@ micro-rotation, δg_i - δω × g_i, so that per unit volume
     δW  = t^i · (δg_i - δω × g_i)                                   gradient: t^i,  -g_i × t^i
     δ²W = (δg_i - δω × g_i) · C^ij (δg_j - δω × g_j)                C^ij = R̃ (G^i · C · G^j) R̃ᵀ
           - 2 t^i · (δω × δg_i) + t^i · (δω × (δω × g_i))           geometric part
-          + 4 z φ' t^3 · δd                                         g_3 is bilinear in φ and d.
+          + 4 z δφ t^3 · δd                                         g_3 is bilinear in φ and d.
 
 In the mixed tangent (Magisano, Leonetti and Garcea 2017) the geometric part uses stresses P', κ' predicted linearly by
 the last iteration in place of those of the state; the gradient stays exact.
@@ -25,7 +25,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from magshell.arrays import FloatArray
+from magshell.arrays import AnyArray, FloatArray
 from magshell.compiled import also_compiled, choose_by_type, inline
 from magshell.magnetics import law as coupling_laws
 from magshell.magnetics.law import Coupling
@@ -175,7 +175,7 @@ def section(
     kappa_mixed: FloatArray,
     mixed: bool,
     tangent: bool,
-    w: Workspace,
+    scratch: AnyArray,
     g: FloatArray,
     g_mixed: FloatArray,
     H: FloatArray,
@@ -185,6 +185,7 @@ def section(
     Fills the columns of g (31, 2), internal and magnetic gradient; with `tangent` also H (31, 31), and g_mixed (31,),
     the whole gradient that the geometric part is made with. A point with det F <= 0 leaves them unfinished.
     """
+    w = scratch[0]
     g[:, :] = 0.0
     if tangent:
         g_mixed[:], H[:, :], w.H_gω[:, :], w.H_ωg[:, :], w.H_ωω[:, :] = 0.0, 0.0, 0.0, 0.0, 0.0
@@ -272,11 +273,12 @@ def predicted_stress(
     p: int,
     x: FloatArray,
     dx: FloatArray,
-    w: Workspace,
+    scratch: AnyArray,
     P_mixed: FloatArray,
     kappa_mixed: FloatArray,
 ) -> None:
     """Fill P' = P + C : ΔU (levels, 3, 3) and κ' = κ + Δκ (2, 3), linear in the increment dx (31,) from x."""
+    w = scratch[0]
     q, dq = x[Q : Q + 4], dx[Q : Q + 4]
     n2 = rotation_matrix(q, w.R)
     spin_map(q, n2, w.V)
