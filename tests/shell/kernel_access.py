@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from magshell.compiled import jit
+from magshell.compiled import Kernel
 from magshell.shell import point
 from magshell.shell.point import workspace
 from magshell.shell.section import section
@@ -32,7 +32,7 @@ def pack(parts, concatenate=np.concatenate):
     return concatenate([parts[name].reshape(-1) for name in order])
 
 
-@jit
+@Kernel
 def _section(material, couple_modulus, coupling, B, geometry, remanence, e, p, x, P, kappa, mixed, g, g_mixed, H):
     return section(
         material, couple_modulus, coupling, B, geometry, remanence, e, p, x, P, kappa, mixed, True,

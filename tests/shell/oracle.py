@@ -213,15 +213,23 @@ def point_of(d, here, e, B):
 
 
 def element(d, state, e, B):
-    """Residual (86,) and tangent (86, 86) before condensation, in the chart exp(ϑ/2) q about the state."""
-    r, K = np.zeros(SIZE), np.zeros((SIZE, SIZE))
+    """Strain energy, residual (86,), tangent (86, 86) before condensation, in the chart exp(ϑ/2) q about the state."""
+    strain, r, K = 0.0, np.zeros(SIZE), np.zeros((SIZE, SIZE))
     for parent in RULE:
         f, here = element_parts(d, state, e, parent, jets.variables(np.zeros(SIZE)))
         point = point_of(d, here, e, B)
         energy, (g, H) = strain_energy(d.model.shell.material, f, point), magnetic_work(d.model.coupling, f, point)
+        strain += energy.value
         r += energy.gradient + g
         K += energy.hessian + H
-    return r, K
+    return strain, r, K
+
+
+def condensed(r, K):
+    """Residual and tangent after the elimination of α, and (K_αα⁻¹ r_α, K_αα⁻¹ K_αv)."""
+    v, a = slice(0, NODAL), slice(NODAL, None)
+    solved = np.linalg.solve(K[a, a], np.column_stack([r[a], K[a, v]]))
+    return r[v] - K[v, a] @ solved[:, 0], K[v, v] - K[v, a] @ solved[:, 1:], solved[:, 0], solved[:, 1:]
 
 
 def stresses(d, state, e, variation):

@@ -1,0 +1,137 @@
+"""From element matrices to equations: every entry in its place, in the nodes' own frames, whatever the numbering."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from battery import FIELD, PATCHES, dense, free_body, patch, random_increment, random_state, scaled_error
+from shell import oracle
+
+from magshell.linalg import nested_dissection
+from magshell.supports import Clamp, Prescribe, SymmetryPlane
+
+SUPPORTS = (
+    SymmetryPlane("left", (1.0, 2.0, -0.5)),
+    SymmetryPlane("bottom", (0.3, -1.0, 0.8)),
+    Prescribe("right", "u", 2, 0.1),
+    Prescribe("top", "omega", 3, -0.2),
+    Prescribe("top", "phi", value=0.3),
+)
+ORDERINGS = {
+    "as numbered": lambda graph: np.arange(graph.shape[0]),
+    "at random": lambda graph: np.random.default_rng(3).permutation(graph.shape[0]),
+    "nested dissection": nested_dissection,
+}
+
+
+def assembled(d, state):
+    """Residual before and after condensation and tangent, (node, component) pairs in global axes, by plain loops."""
+    size = d.free.size
+    r, r_condensed, K = np.zeros(size), np.zeros(size), np.zeros((size, size))
+    for e, nodes in enumerate(d.mesh.elements):
+        _, r_e, K_e = oracle.element(d, state, e, FIELD)
+        where = (10 * nodes[:, None] + np.arange(10)).ravel()
+        r_c, K_c, _, _ = oracle.condensed(r_e, K_e)
+        r[where] += r_e[: oracle.NODAL]
+        r_condensed[where] += r_c
+        K[np.ix_(where, where)] += K_c
+    return r, r_condensed, K
+
+
+def frames(d):
+    """Block-diagonal matrix that turns (node, component) pairs into the nodes' frames."""
+    constraints = d.model.constraints
+    T = np.eye(d.free.size)
+    for node, field in zip(*np.nonzero(constraints.frame_of >= 0), strict=True):
+        at = 10 * node + (0, 3, 7)[field]
+        T[at : at + 3, at : at + 3] = constraints.frames[constraints.frame_of[node, field]]
+    return T
+
+
+@pytest.fixture(scope="module")
+def reference():
+    d = free_body(PATCHES["curved patch"]())
+    state = random_state(d, 31)
+    return d, state, assembled(d, state)
+
+
+@pytest.mark.parametrize("ordering", ORDERINGS.values(), ids=ORDERINGS)
+@pytest.mark.parametrize("supports", [(), SUPPORTS], ids=["free", "oblique supports"])
+def test_matrix_and_right_side(reference, supports, ordering):
+    body, state, (r, r_condensed, K) = reference
+    d = free_body(body.mesh, supports=supports, ordering=ordering)
+    if supports:
+        assert (d.model.constraints.frame_of >= 0).any()
+    assembly = d.assemble(state, 1.0)
+    T, free = frames(d), d.free.ravel()
+    right_side = np.zeros(free.size)
+    right_side[free] = assembly.right_side[d.equations.number[d.free]]
+    errors = {
+        "residual": scaled_error(assembly.residual.ravel(), T @ r),
+        "right side": scaled_error(right_side, np.where(free, -T @ r_condensed, 0.0)),
+        "matrix": scaled_error(dense(d, assembly.matrix), np.where(np.outer(free, free), T @ K @ T.T, 0.0)),
+    }
+    assert max(errors.values()) < 1e-11, errors
+    assert d.dofs == free.sum() == assembly.matrix.shape[0]
+
+
+def test_imposed_increments_go_to_the_right_side(reference):
+    body, state, (_, r_condensed, K) = reference
+    d = free_body(body.mesh, supports=SUPPORTS)
+    T, free, imposed = frames(d), d.free.ravel(), d.imposed(0.7)
+    assert np.array_equal(imposed, 0.7 * d.model.constraints.value)
+    assert np.count_nonzero(imposed) > 10
+    right_side = d.assemble(state, 1.0, imposed=imposed).right_side
+    expected = -(T @ r_condensed + T @ K @ T.T @ imposed.ravel())[free]
+    error = scaled_error(right_side[d.equations.number[d.free]], expected)
+    assert error < 1e-11, f"{error:.1e}"
+
+
+def test_solution_satisfies_the_equations_in_global_axes(reference):
+    """The increment of free unknowns and imposed values, turned back, balances K Δv = -r but for reactions."""
+    body, state, (_, r_condensed, K) = reference
+    d = free_body(body.mesh, supports=SUPPORTS)
+    assembly = d.assemble(state, 1.0, imposed=d.imposed(0.1))
+    solution = np.linalg.solve(assembly.matrix.toarray(), assembly.right_side)
+    increment = d.expand(solution, d.imposed(0.1)).ravel()
+    unbalanced = frames(d) @ (K @ increment + r_condensed)
+    error = np.abs(unbalanced[d.free.ravel()]).max() / np.abs(unbalanced).max()
+    assert error < 1e-10, f"{error:.1e} of the reactions"
+    held = (frames(d) @ increment)[d.model.constraints.fixed.ravel()]
+    assert held == pytest.approx(d.imposed(0.1)[d.model.constraints.fixed], abs=1e-14)
+
+
+def test_pattern_holds_no_more_than_neighbours():
+    """Two unknowns share an entry if and only if an element has both of their nodes."""
+    d = free_body(patch((3, 2)), supports=(Clamp("left"),), ordering=ORDERINGS["at random"])
+    owner = np.empty(d.dofs, dtype=int)
+    owner[d.equations.number[d.free]] = np.nonzero(d.free)[0]
+    neighbours = np.zeros((len(d.mesh.points),) * 2, dtype=bool)
+    for nodes in d.mesh.elements:
+        neighbours[np.ix_(nodes, nodes)] = True
+    matrix = d.assemble(d.undeformed(), 0.0).matrix
+    stored = np.zeros(matrix.shape, dtype=bool)
+    stored[matrix.indices, np.repeat(np.arange(d.dofs), np.diff(matrix.indptr))] = True
+    assert matrix.has_canonical_format
+    assert np.array_equal(stored, neighbours[np.ix_(owner, owner)])
+
+
+def test_mid_sides_carry_u_only():
+    d = free_body(patch((3, 2)))
+    mid_sides = np.setdiff1d(np.arange(len(d.mesh.points)), d.mesh.corner_nodes)
+    assert d.carried[:, :3].all()
+    assert d.carried[d.mesh.corner_nodes].all()
+    assert not d.carried[mid_sides, 3:].any()
+    assert d.dofs == 3 * len(d.mesh.points) + 7 * len(d.mesh.corner_nodes)
+
+
+def test_frames_there_and_back():
+    d = free_body(PATCHES["curved patch"](), supports=SUPPORTS)
+    increment, _ = random_increment(d, 5)
+    error = np.abs(d.to_global(d.to_frames(increment)) - increment).max()
+    assert error < 1e-15, f"{error:.1e}"
+    assert np.abs(d.to_frames(increment).ravel() - frames(d) @ increment.ravel()).max() < 1e-15
+    held = d.to_frames(d.with_imposed(increment, 0.5))
+    fixed = d.model.constraints.fixed
+    assert held[fixed] == pytest.approx(0.5 * d.model.constraints.value[fixed], abs=1e-15)
+    assert np.abs((held - d.to_frames(increment))[~fixed]).max() < 1e-15

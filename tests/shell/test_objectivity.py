@@ -1,0 +1,114 @@
+"""Rigid rotations superposed on a deformed body, and the whole problem turned: nothing but the frame changes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from battery import (
+    FIELD,
+    PATCHES,
+    REMANENCE,
+    dense,
+    each_material,
+    each_pair,
+    free_body,
+    random_state,
+    scaled_error,
+    with_points,
+)
+from scipy.spatial.transform import Rotation
+
+from magshell.shell import rotation
+from magshell.shell.state import State
+
+AXIS = np.array([0.48, -0.6, 0.64])
+ANGLES = [1e-3, 90.0, 180.0, 250.0, 359.0, 500.0]
+each_angle = pytest.mark.parametrize("angle", ANGLES)
+
+
+def rotation_of(angle):
+    """Matrix and quaternion of a rotation in degrees; the quaternion keeps full turns (cos and sin of half of it)."""
+    vector = np.radians(angle) * AXIS
+    return Rotation.from_rotvec(vector).as_matrix(), rotation.exponential(vector)
+
+
+def superposed(d, state, Q, q):
+    """The deformed body turned by Q: x → Q x, d → Q d, R̃ → Q R̃, ā → Q ā."""
+    corners = d.mesh.corner_nodes
+    w, turned = state.w.copy(), state.q.copy()
+    w[corners] = ((d.normals + state.w) @ Q.T - d.normals)[corners]
+    turned[corners] = rotation.product(np.broadcast_to(q, state.q.shape), state.q)[corners]
+    return State((d.mesh.points + state.u) @ Q.T - d.mesh.points, w, state.phi, turned, state.alpha @ Q.T)
+
+
+def turned_rows(nodal, Q):
+    """Vectors of (nodes, 10) turned by Q."""
+    result = nodal.copy()
+    for columns in (slice(0, 3), slice(3, 6), slice(7, 10)):
+        result[:, columns] = nodal[:, columns] @ Q.T
+    return result
+
+
+def turned_matrix(K, Q):
+    """T K Tᵀ on (node, component) pairs."""
+    block = np.eye(10)
+    for at in (0, 3, 7):
+        block[at : at + 3, at : at + 3] = Q
+    T = np.kron(np.eye(len(K) // 10), block)
+    return T @ K @ T.T
+
+
+@each_angle
+@each_pair
+def test_superposed_rotation_of_body_and_field(material, coupling, angle):
+    """Energy to 1e-12, residual and tangent to 1e-10 on a curved patch in a random state that is turned already."""
+    mesh = PATCHES["curved patch"]()
+    Q, q = rotation_of(angle)
+    d, d_turned = (free_body(mesh, material, coupling, field=field) for field in (FIELD, Q @ FIELD))
+    state = random_state(d, 11)
+    moved = superposed(d, state, Q, q)
+    energy, energy_turned = d.element_energy(state).sum(), d_turned.element_energy(moved).sum()
+    first, second = d.assemble(state, 1.0), d_turned.assemble(moved, 1.0)
+    errors = {
+        "energy": abs(energy_turned / energy - 1.0),
+        "residual": scaled_error(second.residual, turned_rows(first.residual, Q)),
+        "tangent": scaled_error(dense(d, second.matrix), turned_matrix(dense(d, first.matrix), Q)),
+    }
+    assert errors["energy"] < 1e-12, errors
+    assert max(errors["residual"], errors["tangent"]) < 1e-10, errors
+
+
+@each_angle
+@each_material
+def test_rigid_rotation_alone_strains_nothing(material, angle):
+    """The undeformed curved patch turned: energy and forces vanish beside those of a strain of 1 %."""
+    d = free_body(PATCHES["curved patch"](), material, field=(0.0, 0.0, 0.0))
+    energy = d.element_energy(superposed(d, d.undeformed(), *rotation_of(angle))).sum()
+    forces = np.abs(d.assemble(superposed(d, d.undeformed(), *rotation_of(angle)), 1.0).residual).max()
+    strained = random_state(d, 12, strain=0.01)
+    reference = d.element_energy(strained).sum(), np.abs(d.assemble(strained, 1.0).residual).max()
+    assert abs(energy) < 1e-10 * reference[0], f"energy {energy:.1e}, of the strain {reference[0]:.1e}"
+    assert forces < 1e-11 * reference[1], f"forces {forces:.1e}, of the strain {reference[1]:.1e}"
+
+
+@pytest.mark.parametrize("angle", [120.0, 250.0])
+@each_pair
+def test_whole_problem_turned(material, coupling, angle):
+    """Mesh, remanence, field and state turned: the same problem seen in another frame."""
+    mesh = PATCHES["curved patch"]()
+    Q, q = rotation_of(angle)
+    d = free_body(mesh, material, coupling)
+    d_turned = free_body(
+        with_points(mesh, mesh.points @ Q.T), material, coupling, remanent=Q @ REMANENCE, field=Q @ FIELD
+    )
+    state = random_state(d, 13)
+    micro = rotation.product(rotation.product(np.broadcast_to(q, state.q.shape), state.q), rotation.conjugate(q))
+    moved = State(state.u @ Q.T, state.w @ Q.T, state.phi, micro, state.alpha @ Q.T)
+    first, second = d.assemble(state, 1.0), d_turned.assemble(moved, 1.0)
+    errors = {
+        "energy": abs(d_turned.element_energy(moved).sum() / d.element_energy(state).sum() - 1.0),
+        "residual": scaled_error(second.residual, turned_rows(first.residual, Q)),
+        "tangent": scaled_error(dense(d, second.matrix), turned_matrix(dense(d, first.matrix), Q)),
+    }
+    assert errors["energy"] < 1e-12, errors
+    assert max(errors["residual"], errors["tangent"]) < 1e-10, errors
