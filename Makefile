@@ -9,12 +9,13 @@ demo: $(VENV)/installed
 	$(BIN)/magshell run gripper --out results/gripper
 
 test: lint
-	$(BIN)/pytest -n 2 --dist loadgroup
+	$(BIN)/pytest -n 2 --dist loadfile
 
 lint: $(VENV)/installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/python docs/make_reference.py --check
 
 figures: $(VENV)/installed
 	$(BIN)/python docs/make_figures.py
