@@ -11,9 +11,7 @@ MIDDLES = np.array([[0, -1], [1, 0], [0, 1], [-1, 0]])
 def shape_functions(xi, eta):
     """The eight serendipity functions at a point."""
     corner = [0.25 * (1 + xi * a) * (1 + eta * b) * (xi * a + eta * b - 1) for a, b in CORNERS]
-    middle = [
-        0.5 * (1 - xi**2) * (1 + eta * b) if a == 0 else 0.5 * (1 - eta**2) * (1 + xi * a) for a, b in MIDDLES
-    ]
+    middle = [0.5 * (1 - xi**2) * (1 + eta * b) if a == 0 else 0.5 * (1 - eta**2) * (1 + xi * a) for a, b in MIDDLES]
     return np.array(corner + middle)
 
 

@@ -127,9 +127,7 @@ def test_three_elements_on_an_edge(two):
     number = np.array([node_at(points, *p) if p[2] == 0 else -1 for p in upright])
     number[number < 0] = len(points) + np.arange((number < 0).sum())
     points = np.vstack([points, upright[upright[:, 2] > 0]])
-    refused(
-        points, np.vstack([elements, number[fin.elements]]), "Elements 0, 1, 2 share the edge", "at most two"
-    )
+    refused(points, np.vstack([elements, number[fin.elements]]), "Elements 0, 1, 2 share the edge", "at most two")
 
 
 def test_neighbours_with_a_middle_each(two):
@@ -143,9 +141,7 @@ def test_a_node_in_the_middle_of_two_edges():
     points, elements = glued(rectangle(1.0, 1.0, (1, 1)), moved(rectangle(1.0, 1.0, (1, 1)), x1=3.0))
     kept = np.delete(np.arange(16), elements[1, 7])
     elements[1, 7] = elements[0, 5]
-    refused(
-        points[kept], np.searchsorted(kept, elements), "Elements 0 and 1", "middle of two different edges"
-    )
+    refused(points[kept], np.searchsorted(kept, elements), "Elements 0 and 1", "middle of two different edges")
 
 
 def test_a_middle_that_is_a_corner_of_the_neighbour():
@@ -156,9 +152,7 @@ def test_a_middle_that_is_a_corner_of_the_neighbour():
         one, other = np.flatnonzero(np.linalg.norm(points - [1.0, height, 0], axis=1) < 1e-9)
         weld[other] = one
     kept, welded = np.unique(weld[elements], return_inverse=True)
-    refused(
-        points[kept], welded.reshape(-1, 8), "corner of element 2", "edge of element 0", "refine element 0"
-    )
+    refused(points[kept], welded.reshape(-1, 8), "corner of element 2", "edge of element 0", "refine element 0")
 
 
 def test_coincident_nodes_that_are_not_welded():
@@ -182,9 +176,7 @@ def test_a_node_on_a_straight_edge_of_another_element(fine):
 
 def test_a_node_on_a_curved_edge_of_another_element():
     """Of two rings one is turned by 5 of the 30 degrees of an element: nodes lie on the true circle only."""
-    points, elements = glued(
-        cylinder(1.0, 0.5, (12, 2)), moved(cylinder(1.0, 0.5, (12, 2), angle=(5, 365)), x3=0.5)
-    )
+    points, elements = glued(cylinder(1.0, 0.5, (12, 2)), moved(cylinder(1.0, 0.5, (12, 2), angle=(5, 365)), x3=0.5))
     refused(points, elements, "do not match", "lies on the edge of the first")
 
 
@@ -228,9 +220,7 @@ def test_a_corner_of_180_degrees_or_more_is_named(corner, depth):
     """The corner is pulled to the line between its neighbours, and beyond it."""
     corners = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], dtype=float)
     corners[corner] += depth * (corners[(corner + 2) % 4] - corners[corner])
-    refused(
-        straight(corners), [range(8)], f"Element 0 is turned inside out at corner {corner + 1}", "180 degrees"
-    )
+    refused(straight(corners), [range(8)], f"Element 0 is turned inside out at corner {corner + 1}", "180 degrees")
 
 
 def test_a_corner_is_turned_inside_out_by_curved_edges(two):
@@ -249,9 +239,7 @@ def test_a_middle_must_lie_in_the_middle_half(two, shift, sound):
     if sound:
         assert len(Mesh(points, elements).elements) == 2
     else:
-        refused(
-            points, elements, f"Element 1: node {middle}", f"{0.5 + shift:.3g} of the way", "0.25 and 0.75"
-        )
+        refused(points, elements, f"Element 1: node {middle}", f"{0.5 + shift:.3g} of the way", "0.25 and 0.75")
 
 
 def test_a_middle_must_not_stand_far_aside(two):

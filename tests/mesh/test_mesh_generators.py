@@ -86,9 +86,7 @@ vectors = st.tuples(*[st.floats(-1, 1)] * 3).filter(lambda v: np.linalg.norm(v) 
     axis=vectors,
     zero=vectors,
 )
-def test_cylinder_lies_on_its_surface_with_the_normal_outward(
-    radius, ratio, around, along, start, span, axis, zero
-):
+def test_cylinder_lies_on_its_surface_with_the_normal_outward(radius, ratio, around, along, start, span, axis, zero):
     e3 = np.array(axis) / np.linalg.norm(axis)
     e1 = np.array(zero) - (np.array(zero) @ e3) * e3
     assume(np.linalg.norm(e1) > 1e-2)
@@ -154,9 +152,7 @@ def test_sphere_patch_lies_on_its_surface_with_the_normal_outward(radius, polar,
     assert_node_count(mesh)
     for name, angle in zip(("top", "bottom"), polar, strict=True):
         height = mesh.points[mesh.nodes_of(name), 2]
-        assert height == pytest.approx(
-            radius * math.cos(math.radians(angle)), rel=1e-9, abs=1e-12 * radius
-        ), name
+        assert height == pytest.approx(radius * math.cos(math.radians(angle)), rel=1e-9, abs=1e-12 * radius), name
 
 
 def test_sphere_patch_puts_left_at_the_first_azimuth():

@@ -43,9 +43,7 @@ def test_selected_edges_are_boundary_edges_only(plate):
         "nearest",
         "(2, 1, 0) m",
     )
-    hollow = blocks(
-        {"one": [(0, 0), (1, 0), (1, 1), (0, 1)], "two": [(1, 0), (2, 0), (2, 1), (1, 1)]}, (1, 1)
-    )
+    hollow = blocks({"one": [(0, 0), (1, 0), (1, 1), (0, 1)], "two": [(1, 0), (2, 0), (2, 1), (1, 1)]}, (1, 1))
     says(lambda: hollow.select_edges("joint", x1=1), "no boundary edge")
 
 
@@ -77,9 +75,7 @@ def test_every_node_is_found_where_it_is(n, m, column):
 
 def test_a_position_between_nodes_names_the_nearest_and_its_distance(plate):
     nearest = plate.node_at((2.0, 1.0, 0.0))
-    says(
-        lambda: plate.node_at((2.0, 1.0, 0.125)), f"nearest is node {nearest}", "(2, 1, 0) m", "0.125 m away"
-    )
+    says(lambda: plate.node_at((2.0, 1.0, 0.125)), f"nearest is node {nearest}", "(2, 1, 0) m", "0.125 m away")
     says(lambda: plate.node_at((1.0, 2.0)), "three finite coordinates")
     says(lambda: plate.node_at((1.0, 2.0, np.nan)), "three finite coordinates")
 

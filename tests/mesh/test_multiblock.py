@@ -24,9 +24,7 @@ shift = st.floats(-0.2, 0.2)
 
 
 @settings(max_examples=25, deadline=None)
-@given(
-    shifts=st.lists(st.tuples(shift, shift), min_size=6, max_size=6), n=st.tuples(*[st.integers(1, 4)] * 3)
-)
+@given(shifts=st.lists(st.tuples(shift, shift), min_size=6, max_size=6), n=st.tuples(*[st.integers(1, 4)] * 3))
 def test_two_crooked_blocks_have_their_areas_and_share_a_side(shifts, n):
     grid = np.array([[i, j] for j in range(2) for i in range(3)], dtype=float) + shifts
     one, other = grid[[0, 1, 4, 3]], grid[[2, 5, 4, 1]]
