@@ -13,7 +13,9 @@ from numpy.typing import ArrayLike
 
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
+from magshell.magnetics.deformation_gradient_energy import DeformationGradientEnergy
 from magshell.magnetics.field import UniformField
+from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.magnetics.remanence import Remanence
 from magshell.mesh import Mesh
 from magshell.rigid import check_supported
@@ -98,8 +100,6 @@ class Model:
     probe_nodes: Mapping[str, int] = dataclasses.field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        from magshell.magnetics.micropolar_couple import MicropolarCouple
-
         mesh = self.shell.mesh
         put = object.__setattr__
         put(self, "coupling", MicropolarCouple() if self.coupling is None else self.coupling)
@@ -113,6 +113,12 @@ class Model:
                 raise InputError(f"probe '{name}': {error}") from None
         put(self, "probe_nodes", MappingProxyType(nodes))
         check_supported(mesh, self.normals, self.constraints)
+        eta = self.shell.material.coupling_modulus
+        if eta == 0.0 and not isinstance(self.coupling, DeformationGradientEnergy):
+            raise InputError(
+                f"material: coupling_modulus is 0, so the micro-rotation that {type(self.coupling).__name__} works on "
+                "never reaches the deformation; the source takes a tenth of shear_modulus"
+            )
         if not np.any(self.constraints.value):
             if self.field.magnitude == 0.0:
                 raise InputError("field: flux_density is zero and no support moves: nothing loads the shell")

@@ -78,5 +78,5 @@ def _direction(vector: FloatArray) -> str:
     axis = int(np.argmax(np.abs(unit)))
     if abs(unit[axis]) > 1.0 - 1e-9:
         return f"X{axis + 1}"
-    unit = unit * np.sign(unit[axis])
+    unit = np.round(unit * np.sign(unit[axis]), 12) + 0.0
     return "({:.3g}, {:.3g}, {:.3g})".format(*unit)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from examples.conftest import BALANCE
 from magshell import Path, problem
 from magshell.shell.evaluation import evaluate
 from magshell.solver import Step

@@ -29,12 +29,13 @@ def strip(
     stops: Sequence[float] = (),
     remanence: Sequence[float] = (143e-3, 0.0, 0.0),
     material: Any = None,
+    coupling: Any = None,
 ) -> Model:
     """A thick strip, clamped on the left and turned up by the field unless told otherwise; probe `tip`."""
     mesh = ms.mesh.rectangle(LENGTH, WIDTH, elements)
     shell = ms.Shell(mesh, THICKNESS, material or rubber(), ms.remanence.constant(remanence))
     held = [ms.Clamp("left")] if supports is None else supports
-    return Model(shell, held, ms.UniformField(field, stops), probes={"tip": (LENGTH, 0, 0)})
+    return Model(shell, held, ms.UniformField(field, stops), coupling, probes={"tip": (LENGTH, 0, 0)})
 
 
 def arm(elements: tuple[int, int] = (6, 2), field: float = 10e-3, stops: Sequence[float] = (), **options: Any) -> Model:

@@ -27,6 +27,7 @@ from magshell.shell.element import (
 from magshell.shell.geometry import SectionGeometry
 from magshell.shell.interpolation import Interpolation
 from magshell.shell.point import SIZE, workspace
+from magshell.shell.rotation import LAST, NEXT
 from magshell.shell.section import predicted_stress, section
 from magshell.shell.state import State
 
@@ -134,6 +135,29 @@ def _turn_rows(nodes: IntArray, equations: Equations, rest: int, rows: FloatArra
                 a0, a1, a2 = rows[at, j], rows[at + stride, j], rows[at + 2 * stride, j]
                 for i in range(3):
                     rows[at + i * stride, j] = R[i, 0] * a0 + R[i, 1] * a1 + R[i, 2] * a2
+
+
+@inline
+def _one_rotation_held(number: IntArray) -> bool:
+    """Whether a node has exactly one held component of rotation."""
+    held = 0
+    for c in range(COMPONENTS - 3, COMPONENTS):
+        held += number[c] < 0
+    return held == 1
+
+
+@inline
+def _add_spin_transport(r: FloatArray, spins: int, rest: int, n: int, Kt: FloatArray) -> None:
+    """K -= [r]×/2 on a node's spins: from the chart exp(ϑ) R̃ to the spins of the new state.
+
+    The node's couples add up to its reaction, which vanishes unless a rotation is held, and does not meet free
+    rotations unless exactly one is.
+    """
+    for i in range(3):
+        j, k = spins + NEXT[i] * rest + n, spins + LAST[i] * rest + n
+        half = 0.5 * r[spins + i * rest + n]
+        Kt[k, j] += half
+        Kt[j, k] -= half
 
 
 @inline
@@ -260,6 +284,8 @@ def assemble(
             for n in range(rest):
                 for i in range(3):
                     Kt[spins + i * rest + n, spins + i * rest + n] -= 0.25 * radial[n]
+                if _one_rotation_held(equations.number[nodes[n]]):
+                    _add_spin_transport(r_sum, spins, rest, n, Kt)
             for l in range(size):
                 r[l, 0] = r_sum[l]
             if not condense(Kt, r_sum, nodal, out.gain[e], out.offset[e], factor):

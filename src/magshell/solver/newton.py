@@ -21,6 +21,8 @@ from magshell.shell.state import State
 from magshell.solver.settings import Settings
 
 HALVINGS = 4
+# An increment of so many body lengths or radians says that the tangent is singular to round-off.
+ABSURD = 1e8
 
 
 class StepFailure(ArithmeticError):
@@ -80,8 +82,11 @@ def newton(
         try:
             linear_solver.factorise(assembly.matrix)
         except SingularMatrix as singular:
-            raise StepFailure(_singular(discretisation, singular)) from None
+            direction = discretisation.expand(singular.null_vector)
+            raise StepFailure(_free_direction(discretisation, direction)) from None
         increment = discretisation.expand(linear_solver.solve(assembly.right_side), imposed)
+        if _size(discretisation, increment).max() > ABSURD:
+            raise StepFailure(_free_direction(discretisation, increment))
         d_alpha = discretisation.recover(increment)
         for halving in range(HALVINGS + 1):
             size = 0.5**halving
@@ -108,12 +113,15 @@ def _inverted(inverted: InvertedElement) -> str:
     return f"element {inverted.element} is turned inside out (det F = {inverted.determinant:.2g})"
 
 
-def _singular(discretisation: Discretisation, singular: SingularMatrix) -> str:
-    direction = np.abs(discretisation.expand(singular.null_vector))
-    lengths = np.array(
-        [discretisation.mesh.size] * 3 + [1.0] * 3 + [1.0 / discretisation.model.shell.thickness] + [1.0] * 3
-    )
-    node, column = np.unravel_index(np.argmax(direction / lengths), direction.shape)
+def _size(discretisation: Discretisation, increment: FloatArray) -> FloatArray:
+    """Magnitudes (nodes, 10) of an increment in body lengths, directors, thickness ratios and radians."""
+    thickness = discretisation.model.shell.thickness
+    units = np.array([discretisation.mesh.size] * 3 + [1.0] * 3 + [1.0 / thickness] + [1.0] * 3)
+    return np.abs(increment) / units
+
+
+def _free_direction(discretisation: Discretisation, direction: FloatArray) -> str:
+    node, column = np.unravel_index(np.argmax(_size(discretisation, direction)), direction.shape)
     name = ("u1", "u2", "u3", "w1", "w2", "w3", "phi", "omega1", "omega2", "omega3")[column]
     position = ", ".join(f"{1e3 * x:.4g}" for x in discretisation.mesh.points[node])
     return f"the tangent is singular; the free direction is largest in {name} of node {node} at ({position}) mm"

@@ -27,10 +27,10 @@ class Settings:
         The second needs an extra.
     """
 
-    tolerance: float = 1e-8
+    tolerance: float = 1e-9
     max_iterations: int = 12
     target_iterations: int = 5
-    first_step: float = 0.005
+    first_step: float = 0.006
     smallest_step: float = 1e-6
     largest_step: float = 1.0
     mixed_tangent: bool = True

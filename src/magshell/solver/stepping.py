@@ -150,8 +150,9 @@ def _extrapolated(steps: list[Step], load_factor: float) -> tuple[FloatArray, Fl
 def _give_up(path: Path, load_factor: float, reason: str) -> str:
     magnitude = path.model.field.magnitude
     last = path.steps[-1].load_factor
+    field = f" ({1e3 * last * magnitude:.4g} mT)" if magnitude > 0.0 else ""
     return (
-        f"stopped at load factor {last:.6g} ({1e3 * last * magnitude:.4g} mT): after {path.cuts} cuts the step to "
+        f"stopped at load factor {last:.6g}{field}: after {path.cuts} cut{'s' * (path.cuts != 1)} the step to "
         f"{load_factor:.6g} still fails: {reason}. Likely causes: a limit point or buckling (the path turns back), "
         "a mesh too coarse for the local bending, or a unit slip; `magshell check` shows the magnitudes"
     )
