@@ -10,6 +10,7 @@ from magshell.shell.evaluation import evaluate
 from magshell.solver import Step
 
 MU0 = 4e-7 * np.pi
+BALANCE = 1e-8
 
 every_problem = pytest.mark.parametrize("name", problem.names())
 
