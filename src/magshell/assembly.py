@@ -15,13 +15,13 @@ from magshell.materials.law import strain_energy
 from magshell.model import Model
 from magshell.shell import loops, rotation
 from magshell.shell.evaluation import evaluate
-from magshell.shell.geometry import section_geometry, unit_forces
+from magshell.shell.geometry import inner_volumes, section_geometry, unit_forces
 from magshell.shell.interpolation import surface_rule
 from magshell.shell.shape_functions import serendipity
 from magshell.shell.state import State
 
 if TYPE_CHECKING:
-    from magshell.mesh import Mesh
+    pass
 
 LEVELS = 2
 ROUND_OFF = 8.0 * np.finfo(float).eps
@@ -97,7 +97,7 @@ class Discretisation:
         corners = mesh.elements[:, : shape.rest.shape[1]]
         coordinates = mesh.points[mesh.elements]
         geometry = section_geometry(coordinates, model.normals[corners], shape, model.shell.thickness, LEVELS)
-        _check_thickness(mesh, geometry.volume)
+        _check_thickness(inner_volumes(geometry, model.shell.thickness))
         positions = np.einsum("pn,enx->epx", serendipity(shape.parent)[0], coordinates)
         remanence = np.ascontiguousarray(model.shell.remanence(mesh, positions), dtype=float)
         self.body = loops.Body(np.ascontiguousarray(mesh.elements), geometry, shape, remanence)
@@ -379,7 +379,7 @@ def _pattern(graph: sp.csr_array, order: IntArray, counts: IntArray) -> tuple[Pa
     return Pattern(indptr, rows[index].astype(np.int32), len(node_of_column)), row_offset
 
 
-def _check_thickness(mesh: Mesh, volume: FloatArray) -> None:
+def _check_thickness(volume: FloatArray) -> None:
     """A shell thicker than twice its radius of curvature has layers of negative volume."""
     from magshell.errors import InputError
 

@@ -41,6 +41,13 @@ class Support(Protocol):
         """The conditions."""
 
 
+def _numbers(group: str, name: str, value: ArrayLike) -> FloatArray:
+    try:
+        return np.array(value, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"support on '{group}': {name} is {value!r}; it takes numbers") from None
+
+
 def _fixed(group: str, field: str) -> Iterator[Condition]:
     for axis in AXES:
         yield Condition(group, field, axis, 0.0, optional=True)
@@ -78,7 +85,7 @@ class SymmetryPlane:
 
     def conditions(self) -> Iterator[Condition]:
         """Four per node."""
-        normal = np.asarray(self.normal, dtype=float)
+        normal = _numbers(self.group, "normal", self.normal)
         if normal.shape != (3,) or not np.all(np.isfinite(normal)) or not np.any(normal):
             raise InputError(
                 f"support on '{self.group}': normal is {self.normal!r}; it needs 3 components, not all zero"
@@ -119,7 +126,7 @@ class Prescribe:
         where = f"support on '{self.group}'"
         if self.field not in FIELDS:
             raise InputError(f"{where}: field is '{self.field}'. {suggest(self.field, FIELDS)}")
-        value = np.asarray(self.value, dtype=float)
+        value = _numbers(self.group, "value", self.value)
         if not np.all(np.isfinite(value)):
             raise InputError(f"{where}: value is {self.value!r}; it must be finite")
         if self.field == "phi" or self.component is not None:

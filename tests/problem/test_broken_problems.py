@@ -163,7 +163,7 @@ BROKEN = [
     Broken("symmetry without normal", '"clamp"', '"symmetry"', "supports[0].normal", ("missing",)),
     Broken("prescribed value in the wrong unit", '"clamp"', '"prescribe"\nfield = "u"\ncomponent = 3\nvalue = "1 deg"', "supports[0].value", ("angle", "length")),
     Broken("prescribed value of two components", '"clamp"', '"prescribe"\nfield = "u"\nvalue = ["1 mm", 0]', "supports[0].value", ("2 entries", "expected one value, or three")),
-    Broken("contradicting supports", CLAMP, CLAMP + '[[supports]]\nkind = "prescribe"\ngroup = "left"\nfield = "u"\nvalue = "1 mm"\n', "", ("supports contradict each other", "'left'")),
+    Broken("contradicting supports", CLAMP, CLAMP + '[[supports]]\nkind = "prescribe"\ngroup = "left"\nfield = "u"\nvalue = "1 mm"\n', "", ("supports: they contradict each other", "'left'")),
     Broken("no remanence", '"143 mT"', "0", "remanence", ("zero everywhere",)),
     Broken("component 4", '"clamp"', '"prescribe"\nfield = "u"\ncomponent = 4', "supports[0].component", ("4", "1, 2 or 3")),
     Broken("component of phi", '"clamp"', '"prescribe"\nfield = "phi"\ncomponent = 1', "supports[0].component", ("phi",)),

@@ -30,12 +30,12 @@ def _energy(material: MicropolarMooneyRivlin, U: FloatArray) -> float:
     mu2 = material.second_invariant_share * material.shear_modulus
     mu1 = material.shear_modulus - mu2
     J = inverse_transpose(U)[1]
-    C = U.T @ U
     I1, C_squared, U_squared = 0.0, 0.0, 0.0
     for p in range(3):
-        I1 += C[p, p]
         for j in range(3):
-            C_squared += C[p, j] * C[p, j]
+            C_pj = U[0, p] * U[0, j] + U[1, p] * U[1, j] + U[2, p] * U[2, j]
+            I1 += U[p, j] * U[p, j]
+            C_squared += C_pj * C_pj
             U_squared += U[p, j] * U[j, p]
     I2 = 0.5 * (I1**2 - C_squared)
     return (

@@ -103,6 +103,13 @@ def section_geometry(
     )
 
 
+def inner_volumes(geometry: SectionGeometry, thickness: float) -> FloatArray:
+    """Volumes per parent area (elements, p, 2) at the two faces, m³: not positive where layers overlap."""
+    faces = np.array([-0.5, 0.5]) * thickness
+    covariant = geometry.A[:, :, None] + faces[:, None, None] * geometry.dD[:, :, None]
+    return np.asarray(np.einsum("epkx,epx->epk", np.cross(covariant[..., 0, :], covariant[..., 1, :]), geometry.D))
+
+
 def unit_forces(geometry: SectionGeometry, shape: Interpolation) -> FloatArray:
     """Nodal forces of a stress of 1 Pa whose contributions do not cancel: norms over all elements for u, w, φ and ω.
 
