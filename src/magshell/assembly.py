@@ -15,7 +15,7 @@ from magshell.materials.law import strain_energy
 from magshell.model import Model
 from magshell.shell import loops, rotation
 from magshell.shell.evaluation import evaluate
-from magshell.shell.geometry import inner_volumes, section_geometry, unit_forces
+from magshell.shell.geometry import least_shifts, section_geometry, unit_forces
 from magshell.shell.interpolation import surface_rule
 from magshell.shell.shape_functions import serendipity
 from magshell.shell.state import State
@@ -97,7 +97,7 @@ class Discretisation:
         corners = mesh.elements[:, : shape.rest.shape[1]]
         coordinates = mesh.points[mesh.elements]
         geometry = section_geometry(coordinates, model.normals[corners], shape, model.shell.thickness, LEVELS)
-        _check_thickness(inner_volumes(geometry, model.shell.thickness))
+        _check_thickness(least_shifts(geometry, model.shell.thickness))
         positions = np.einsum("pn,enx->epx", serendipity(shape.parent)[0], coordinates)
         remanence = np.ascontiguousarray(model.shell.remanence(mesh, positions), dtype=float)
         self.body = loops.Body(np.ascontiguousarray(mesh.elements), geometry, shape, remanence)
@@ -379,11 +379,11 @@ def _pattern(graph: sp.csr_array, order: IntArray, counts: IntArray) -> tuple[Pa
     return Pattern(indptr, rows[index].astype(np.int32), len(node_of_column)), row_offset
 
 
-def _check_thickness(volume: FloatArray) -> None:
-    """A shell thicker than twice its radius of curvature has layers of negative volume."""
+def _check_thickness(shifts: FloatArray) -> None:
+    """A shell thicker than twice a radius of curvature has layers that overlap."""
     from magshell.errors import InputError
 
-    bad = np.flatnonzero((volume <= 0.0).any(axis=(1, 2)))
+    bad = np.flatnonzero((shifts <= 0.0).any(axis=(1, 2)))
     if bad.size:
         raise InputError(
             f"shell: thickness is larger than the curvature of element {bad[0]} allows (it would overlap itself inside)"

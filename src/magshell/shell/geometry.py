@@ -103,11 +103,13 @@ def section_geometry(
     )
 
 
-def inner_volumes(geometry: SectionGeometry, thickness: float) -> FloatArray:
-    """Volumes per parent area (elements, p, 2) at the two faces, m³: not positive where layers overlap."""
+def least_shifts(geometry: SectionGeometry, thickness: float) -> FloatArray:
+    """Least eigenvalue of the shifter I - z B at the two faces, (elements, p, 2): not positive where layers overlap."""
     faces = np.array([-0.5, 0.5]) * thickness
-    covariant = geometry.A[:, :, None] + faces[:, None, None] * geometry.dD[:, :, None]
-    return np.asarray(np.einsum("epkx,epx->epk", np.cross(covariant[..., 0, :], covariant[..., 1, :]), geometry.D))
+    metric = np.einsum("epax,epbx->epab", geometry.A, geometry.A)
+    slope = np.einsum("epax,epbx->epab", geometry.dD, geometry.A)
+    curvatures = np.linalg.eigvals(np.linalg.solve(metric, slope)).real
+    return np.asarray(1.0 + np.min(faces[:, None] * curvatures[:, :, None], axis=-1))
 
 
 def unit_forces(geometry: SectionGeometry, shape: Interpolation) -> FloatArray:
