@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
 
 from magshell.arrays import FloatArray, IntArray
+from magshell.errors import InputError
 from magshell.materials.law import strain_energy
 from magshell.model import Model
 from magshell.shell import loops, rotation
@@ -19,9 +20,6 @@ from magshell.shell.geometry import least_shifts, section_geometry, unit_forces
 from magshell.shell.interpolation import surface_rule
 from magshell.shell.shape_functions import serendipity
 from magshell.shell.state import State
-
-if TYPE_CHECKING:
-    pass
 
 LEVELS = 2
 ROUND_OFF = 8.0 * np.finfo(float).eps
@@ -100,6 +98,9 @@ class Discretisation:
         _check_thickness(least_shifts(geometry, model.shell.thickness))
         positions = np.einsum("pn,enx->epx", serendipity(shape.parent)[0], coordinates)
         remanence = np.ascontiguousarray(model.shell.remanence(mesh, positions), dtype=float)
+        if not np.all(np.isfinite(remanence)):
+            element = int(np.flatnonzero(~np.isfinite(remanence).all(axis=(1, 2)))[0])
+            raise InputError(f"remanence: it is not finite in element {element}")
         self.body = loops.Body(np.ascontiguousarray(mesh.elements), geometry, shape, remanence)
         self.modes = geometry.enhancement.shape[2]
         self.rest = self.body.shape.rest.shape[1]
@@ -222,10 +223,7 @@ class Discretisation:
         elements, points, levels = self.body.geometry.volume.shape
         mixed = stresses is not None
         if stresses is None:
-            stresses = loops.Stresses(
-                np.broadcast_to(np.zeros(()), (elements, points, levels, 3, 3)),
-                np.broadcast_to(np.zeros(()), (elements, points, 2, 3)),
-            )
+            stresses = loops.Stresses(np.zeros((elements, points, levels, 3, 3)), np.zeros((elements, points, 2, 3)))
         if imposed is None:
             imposed = np.zeros_like(out.residual)
         element, determinant = loops.assemble(
@@ -381,8 +379,6 @@ def _pattern(graph: sp.csr_array, order: IntArray, counts: IntArray) -> tuple[Pa
 
 def _check_thickness(shifts: FloatArray) -> None:
     """A shell thicker than twice a radius of curvature has layers that overlap."""
-    from magshell.errors import InputError
-
     bad = np.flatnonzero((shifts <= 0.0).any(axis=(1, 2)))
     if bad.size:
         raise InputError(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from battery import patch
+from battery import free_body, patch
 
 from magshell.errors import InputError
 from magshell.magnetics import remanence
@@ -119,3 +119,10 @@ def test_per_element():
 def test_vectors_that_make_no_sense(make, message):
     with pytest.raises(InputError, match=message):
         make()
+
+
+def test_remanence_that_is_not_finite_names_the_element():
+    values = np.zeros((2, 3))
+    values[1, 2] = np.nan
+    with pytest.raises(InputError, match="not finite in element 1"):
+        free_body(patch((2, 1)), remanent=values)
