@@ -100,7 +100,7 @@ def altered(draw: Callable[[st.SearchStrategy[Any]], Any]) -> dict[str, Any]:
         holder, key = draw(st.sampled_from(list(places(data))))
         kind = draw(st.sampled_from(["replace", "replace", "replace", "exchange", "remove", "repeat"]))
         if kind == "replace":
-            holder[key] = draw(VALUES)
+            holder[key] = copy.deepcopy(draw(VALUES))
         elif kind == "exchange":
             other, place = draw(st.sampled_from(list(places(data))))
             holder[key], other[place] = copy.deepcopy(other[place]), copy.deepcopy(holder[key])

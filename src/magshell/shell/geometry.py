@@ -51,7 +51,8 @@ def director_functions(normals: FloatArray, N: FloatArray, dN: FloatArray) -> Fl
     The undeformed director is the interpolated normal made a unit vector, D = Σ Ñ_I D_I, and d = Σ Ñ_I (D_I + w_I).
     A rigid rotation w_I = (R - I) D_I then gives d = R D exactly at every point. (With the surface's own normal at the
     point in place of Σ Ñ_I D_I it does not: one element of the gripper turned by 77° shows the forces of a stretch of
-    0.03–0.1 %, and its linear rotations are not zero-energy modes. The two differ by O(h³) at the Gauss points.)
+    0.03–0.1 %, and its linear rotations are not zero-energy modes. At the Gauss points the two differ by O(h³) on a
+    cylinder and O(h²) on a sphere.)
 
     Parameters
     ----------
