@@ -125,7 +125,8 @@ class Unsupported:
 
     @cached_property
     def constraints(self):
-        return resolve(self.shell.mesh, self.supports)
+        mesh = self.shell.mesh
+        return resolve(mesh, self.supports, self.shell.element.carriers(mesh.elements, len(mesh.points)))
 
     @cached_property
     def normals(self):

@@ -15,15 +15,15 @@ from magshell.errors import InputError
 from magshell.materials.law import strain_energy
 from magshell.model import Model
 from magshell.shell import loops, rotation
+from magshell.shell.element import Layout
 from magshell.shell.evaluation import evaluate
-from magshell.shell.geometry import least_shifts, section_geometry, unit_forces
-from magshell.shell.interpolation import surface_rule
-from magshell.shell.shape_functions import serendipity
+from magshell.shell.geometry import interpolation, least_shifts, section_geometry, unit_forces
 from magshell.shell.state import State
 
 LEVELS = 2
 ROUND_OFF = 8.0 * np.finfo(float).eps
 KINDS = ("u", "w", "phi", "omega", "alpha")
+WIDTHS = {"u": 3, "w": 3, "phi": 1, "omega": 3}
 _COLUMNS = (slice(0, 3), slice(3, 6), slice(6, 7), slice(7, 10))
 Ordering = Callable[[sp.csr_array], IntArray]
 
@@ -91,24 +91,25 @@ class Discretisation:
     def __init__(self, model: Model, ordering: Ordering) -> None:
         self.model, self.mesh = model, model.shell.mesh
         mesh = self.mesh
-        shape = surface_rule()
-        corners = mesh.elements[:, : shape.rest.shape[1]]
-        coordinates = mesh.points[mesh.elements]
-        geometry = section_geometry(coordinates, model.normals[corners], shape, model.shell.thickness, LEVELS)
-        _check_thickness(least_shifts(geometry, model.shell.thickness))
-        positions = np.einsum("pn,enx->epx", serendipity(shape.parent)[0], coordinates)
+        element, thickness = model.shell.element, model.shell.thickness
+        coordinates, normals = mesh.points[mesh.elements], model.normals[mesh.elements]
+        shape = interpolation(coordinates, normals, element)
+        geometry = section_geometry(coordinates, normals, shape, element.rule.weights, thickness, LEVELS)
+        _check_thickness(least_shifts(geometry, thickness))
+        functions = element.functions(8, element.rule.points, coordinates)
+        positions = np.einsum("epn,enx->epx", functions.values, coordinates)
         remanence = np.ascontiguousarray(model.shell.remanence(mesh, positions), dtype=float)
         if not np.all(np.isfinite(remanence)):
-            element = int(np.flatnonzero(~np.isfinite(remanence).all(axis=(1, 2)))[0])
-            raise InputError(f"remanence: it is not finite in element {element}")
-        self.body = loops.Body(np.ascontiguousarray(mesh.elements), geometry, shape, remanence)
-        self.modes = geometry.enhancement.shape[2]
-        self.rest = self.body.shape.rest.shape[1]
+            bad = int(np.flatnonzero(~np.isfinite(remanence).all(axis=(1, 2)))[0])
+            raise InputError(f"remanence: it is not finite in element {bad}")
+        self.modes = len(element.modes)
+        layout = Layout(8, element.rest_nodes, element.stretch_nodes, element.rest_nodes, self.modes)
+        self.body = loops.Body(np.ascontiguousarray(mesh.elements), layout, geometry, shape, remanence)
         self._number_equations(ordering)
         material = model.shell.material
         stiffest = 2.0 * material.shear_modulus + material.lame_lambda
         self._noise = ROUND_OFF * stiffest * unit_forces(geometry, shape)
-        elements, values = len(mesh.elements), 3 * mesh.elements.shape[1] + 7 * self.rest
+        elements, values = len(mesh.elements), self.equations.local_node.size
         self._out = loops.Assembled(
             np.zeros(self.pattern.indices.size),
             np.zeros((len(mesh.points), loops.COMPONENTS)),
@@ -126,9 +127,8 @@ class Discretisation:
     def _number_equations(self, ordering: Ordering) -> None:
         mesh, constraints = self.mesh, self.model.constraints
         nodes, per_element = len(mesh.points), mesh.elements.shape[1]
-        carried = np.zeros((nodes, loops.COMPONENTS), dtype=bool)
-        carried[:, :3] = True
-        carried[mesh.corner_nodes] = True
+        carriers = self.model.shell.element.carriers(mesh.elements, nodes)
+        carried = np.column_stack([carriers[field] for field in ("u", "w", "phi", "omega") for _ in range(WIDTHS[field])])
         free = carried & ~constraints.fixed
         self.carried, self.free = carried, free
         incidence = sp.csr_array(
@@ -147,8 +147,10 @@ class Discretisation:
         rank = np.cumsum(free, axis=1) - 1
         number = np.where(free, first[:, None] + rank, -1)
         self.pattern, row_offset = _pattern(graph, order, counts)
-        local_node = np.concatenate([np.tile(np.arange(per_element), 3), np.tile(np.arange(self.rest), 7)])
-        local_component = np.concatenate([np.repeat(np.arange(3), per_element), np.repeat(np.arange(3, 10), self.rest)])
+        layout = self.body.layout
+        carrying = [layout.u] * 3 + [layout.w] * 3 + [layout.phi] + [layout.q] * 3
+        local_node = np.concatenate([np.arange(count) for count in carrying])
+        local_component = np.repeat(np.arange(loops.COMPONENTS), carrying)
         pairs = mesh.elements
         offset = (
             np.asarray(
@@ -161,6 +163,7 @@ class Discretisation:
             local_component.astype(np.int64),
             number,
             rank,
+            (free == carried).all(axis=1),
             self.pattern.indptr,
             offset,
             np.ascontiguousarray(constraints.frame_of),
@@ -289,27 +292,29 @@ class Discretisation:
     def recover(self, increment: FloatArray) -> FloatArray:
         """Δα (elements, modes, 3) of the last assembled tangent for a nodal increment in global axes."""
         d_alpha = np.empty((len(self.mesh.elements), self.modes, 3))
-        loops.recover_enhancement(self.body.elements, self.rest, increment, self._out.gain, self._out.offset, d_alpha)
+        loops.recover_enhancement(self.body.elements, self.body.layout, increment, self._out.gain, self._out.offset, d_alpha)
         return d_alpha
 
     # -- what pictures and files see -----------------------------------------------------------------------------
 
     def nodal_director(self, state: State) -> FloatArray:
-        """Director d = D + w (nodes, 3); mid-sides take the mean of their corners' w."""
-        return self.normals + self._filled(state.w)
+        """Director d = D + w (nodes, 3)."""
+        return self.normals + self._filled(state.w, self.body.layout.w)
 
     def nodal_phi(self, state: State) -> FloatArray:
         """Thickness stretch φ (nodes,), 1/m."""
-        return self._filled(state.phi)
+        return self._filled(state.phi, self.body.layout.phi)
 
     def nodal_rotation(self, state: State) -> FloatArray:
         """Micro-rotation vector (nodes, 3), rad, of magnitude at most π."""
-        ends = self._mid_side_ends
-        q = state.q.copy()
-        first, second = q[ends[:, 0]], q[ends[:, 1]]
-        sign = np.where(np.sum(first * second, axis=1, keepdims=True) < 0.0, -1.0, 1.0)
-        mean = first + sign * second
-        q[self._mid_sides] = mean / np.linalg.norm(mean, axis=1, keepdims=True)
+        q = state.q
+        if self.body.layout.q == 4:
+            ends = self._mid_side_ends
+            first, second = q[ends[:, 0]], q[ends[:, 1]]
+            sign = np.where(np.sum(first * second, axis=1, keepdims=True) < 0.0, -1.0, 1.0)
+            mean = first + sign * second
+            q = q.copy()
+            q[self._mid_sides] = mean / np.linalg.norm(mean, axis=1, keepdims=True)
         return rotation.logarithm(q)
 
     def element_remanence(self, state: State) -> FloatArray:
@@ -348,8 +353,10 @@ class Discretisation:
         corners = self.mesh.elements[:, :4]
         return np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2)
 
-    def _filled(self, nodal: FloatArray) -> FloatArray:
-        """A field of the corners, its mid-sides set to the mean of their ends."""
+    def _filled(self, nodal: FloatArray, carriers: int) -> FloatArray:
+        """A field of so many nodes of each element; where that is the corners, mid-sides take the mean of their ends."""
+        if carriers == 8:
+            return nodal
         values = nodal.copy()
         values[self._mid_sides] = nodal[self._mid_side_ends].mean(axis=1)
         return values

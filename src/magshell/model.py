@@ -1,4 +1,4 @@
-"""The problem as immutable data: shell, supports, field, coupling law, probes; validated once."""
+"""The problem as immutable data: shell, supports, field, coupling law, probes, loads; validated once."""
 
 from __future__ import annotations
 
@@ -12,15 +12,20 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from magshell.arrays import FloatArray
-from magshell.errors import InputError
+from magshell.errors import InputError, suggest
+from magshell.loads import Load, nodal_forces
 from magshell.magnetics.deformation_gradient_energy import DeformationGradientEnergy
 from magshell.magnetics.field import UniformField
 from magshell.magnetics.micropolar_couple import MicropolarCouple
-from magshell.magnetics.remanence import Remanence
+from magshell.magnetics.remanence import Remanence, constant
 from magshell.mesh import Mesh
 from magshell.rigid import check_supported
+from magshell.shell.elements import ELEMENTS, PAPER, ElementType
 from magshell.shell.normals import nodal_normals
 from magshell.supports import Constraints, Support, resolve
+
+NO_FIELD = UniformField((0.0, 0.0, 0.0))
+NO_REMANENCE = constant((0.0, 0.0, 0.0))
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -35,8 +40,11 @@ class Shell:
         m.
     material : Material
         A law with its parameters, for instance `MicropolarNeoHookean`.
-    remanence : Remanence
-        Remanent flux density of the undeformed material, see `magshell.remanence`.
+    remanence : Remanence, optional
+        Remanent flux density of the undeformed material, see `magshell.remanence`; by default none.
+
+    element : ElementType or str, optional
+        Element type or its name, see `magshell.shell.elements`.
 
     Raises
     ------
@@ -47,7 +55,8 @@ class Shell:
     mesh: Mesh
     thickness: float
     material: Any
-    remanence: Remanence
+    remanence: Remanence = NO_REMANENCE
+    element: Any = PAPER
 
     def __post_init__(self) -> None:
         thickness = _positive("shell: thickness", self.thickness, "m")
@@ -68,35 +77,52 @@ class Shell:
             raise InputError(f"material: {problem}")
         object.__setattr__(self, "thickness", thickness)
         object.__setattr__(self, "material", material)
+        if isinstance(self.element, str):
+            if self.element not in ELEMENTS:
+                raise InputError(f"shell: element is '{self.element}'. {suggest(self.element, ELEMENTS)}")
+            object.__setattr__(self, "element", ELEMENTS[self.element])
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Model:
-    """A shell, held by supports, in a field.
+    """A shell, held by supports, in a field and under loads.
 
     Parameters
     ----------
     shell : Shell
     supports : sequence of Support
         `Clamp`, `SimpleSupport`, `SymmetryPlane`, `Prescribe`.
-    field : UniformField
+    field : UniformField, optional
+        By default none.
     coupling : Coupling, optional
         Magnetic coupling law; by default the couple of the micropolar theory.
     probes : mapping of str to (3,) array_like, optional
         Reference positions of nodes to follow, m.
+    loads : sequence of Load
+        `Force`, `Moment`.
+
+    Attributes
+    ----------
+    constraints : Constraints
+        The supports, node by node.
+    nodal_loads : ndarray, shape (nodes, 10)
+        External forces at load factor 1 in global axes: N on u, N m on the spin.
 
     Raises
     ------
     InputError
-        Unknown groups, contradicting supports, a free rigid motion (named), probes that are not nodes, no load.
+        Unknown groups, contradicting supports, a free rigid motion (named), probes that are not nodes, loads that make
+        no sense, or nothing that loads the shell.
     """
 
     shell: Shell
     supports: Sequence[Support]
-    field: UniformField
+    field: UniformField = NO_FIELD
     coupling: Any = None
     probes: Mapping[str, ArrayLike] = dataclasses.field(default_factory=dict)
+    loads: Sequence[Load] = ()
     constraints: Constraints = dataclasses.field(init=False, repr=False)
+    nodal_loads: FloatArray = dataclasses.field(init=False, repr=False)
     probe_nodes: Mapping[str, int] = dataclasses.field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -104,7 +130,11 @@ class Model:
         put = object.__setattr__
         put(self, "coupling", MicropolarCouple() if self.coupling is None else self.coupling)
         put(self, "supports", tuple(self.supports))
-        put(self, "constraints", resolve(mesh, self.supports))
+        carriers = self.shell.element.carriers(mesh.elements, len(mesh.points))
+        put(self, "constraints", resolve(mesh, self.supports, carriers))
+        put(self, "loads", tuple(self.loads))
+        rotating = np.isin(np.arange(len(mesh.points)), mesh.corner_nodes)
+        put(self, "nodal_loads", nodal_forces(mesh, self.loads, rotating))
         nodes = {}
         for name, position in self.probes.items():
             try:
@@ -113,17 +143,32 @@ class Model:
                 raise InputError(f"probe '{name}': {error}") from None
         put(self, "probe_nodes", MappingProxyType(nodes))
         check_supported(mesh, self.normals, self.constraints)
-        eta = self.shell.material.coupling_modulus
-        if eta == 0.0 and not isinstance(self.coupling, DeformationGradientEnergy):
-            raise InputError(
-                f"material: coupling_modulus is 0, so the micro-rotation that {type(self.coupling).__name__} works on "
-                "never reaches the deformation; the source takes a tenth of shear_modulus"
-            )
-        if not np.any(self.constraints.value):
-            if self.field.magnitude == 0.0:
-                raise InputError("field: flux_density is zero and no support moves: nothing loads the shell")
-            if not np.any(self.shell.remanence(mesh, mesh.points[mesh.elements])):
-                raise InputError("remanence: it is zero everywhere and no support moves: nothing loads the shell")
+        self._check_the_micro_rotation_matters()
+        self._check_something_loads()
+
+    def _check_the_micro_rotation_matters(self) -> None:
+        if self.shell.material.coupling_modulus > 0.0:
+            return
+        if np.any(self.nodal_loads[:, 7:]):
+            worker = "a moment"
+        elif self.field.magnitude > 0.0 and not isinstance(self.coupling, DeformationGradientEnergy):
+            worker = type(self.coupling).__name__
+        else:
+            return
+        raise InputError(
+            f"material: coupling_modulus is 0, so the micro-rotation that {worker} works on "
+            "never reaches the deformation; the source takes a tenth of shear_modulus"
+        )
+
+    def _check_something_loads(self) -> None:
+        mesh = self.shell.mesh
+        if np.any(self.constraints.value) or np.any(self.nodal_loads):
+            return
+        otherwise = "and no support moves, nor is there a load: nothing loads the shell"
+        if self.field.magnitude == 0.0:
+            raise InputError(f"field: flux_density is zero {otherwise}")
+        if not np.any(self.shell.remanence(mesh, mesh.points[mesh.elements])):
+            raise InputError(f"remanence: it is zero everywhere {otherwise}")
 
     @cached_property
     def normals(self) -> FloatArray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol, TypeAlias
 
@@ -20,7 +20,7 @@ AXES = np.eye(3)
 class Condition(NamedTuple):
     """direction · field = value at load factor 1, on every node of a group.
 
-    `optional` conditions skip nodes that do not carry the field (mid-side nodes carry only u).
+    `optional` conditions skip nodes that do not carry the field, as some mid-side nodes do not.
     """
 
     group: str
@@ -174,8 +174,15 @@ _COLUMN = {"u": 0, "w": 3, "phi": 6, "omega": 7}
 _FRAME = {"u": 0, "w": 1, "omega": 2}
 
 
-def resolve(mesh: Mesh, supports: Supports) -> Constraints:
+def resolve(mesh: Mesh, supports: Supports, carriers: Mapping[str, AnyBool]) -> Constraints:
     """Conditions of all supports as fixed components, with frames of their own where directions are oblique.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    supports : sequence of Support
+    carriers : mapping of str to (nodes,) ndarray of bool
+        Which nodes carry the fields u, w, phi and omega.
 
     Raises
     ------
@@ -186,20 +193,18 @@ def resolve(mesh: Mesh, supports: Supports) -> Constraints:
     fixed, value = np.zeros((nodes, 10), dtype=bool), np.zeros((nodes, 10))
     frame_of = np.full((nodes, 3), -1)
     frames: list[FloatArray] = []
-    carries = np.zeros(nodes, dtype=bool)
-    carries[mesh.corner_nodes] = True
     directions: dict[tuple[int, str], list[tuple[FloatArray, float, str]]] = {}
     for support in supports:
         for condition in support.conditions():
             members = mesh.nodes_of(condition.group)
             if condition.field != "u":
-                absent = members[~carries[members]]
-                if absent.size == members.size and not condition.optional:
+                carries = carriers[condition.field][members]
+                if not carries.any() and not condition.optional:
                     raise InputError(
-                        f"support on '{condition.group}': node {absent[0]} is a mid-side node and carries only u; "
-                        f"'{condition.field}' needs corner nodes"
+                        f"support on '{condition.group}': node {members[0]} is a mid-side node and does not carry "
+                        f"'{condition.field}', which needs corner nodes"
                     )
-                members = members[carries[members]]
+                members = members[carries]
             for node in members:
                 directions.setdefault((int(node), condition.field), []).append(
                     (condition.direction, condition.value, condition.group)

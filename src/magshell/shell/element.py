@@ -13,16 +13,46 @@ The enhanced parameters α are condensed: with r_α and K_αα of the element,
 
     K = K_vv - K_vα K_αα⁻¹ K_αv,   r = r_v - K_vα K_αα⁻¹ r_α,   Δα = -K_αα⁻¹ (r_α + K_αv Δv).
 
-Order of the element's values, component by component and node by node within: u (3 × 8), w (3 × 4), φ (4),
-q (4 × 4) or ϑ (3 × 4), α (3 × 2).
+Order of the element's values, component by component and node by node within: u, w, φ, q (4 components) or ϑ (3), α.
+Each field lives on the first so many nodes of the element (`Layout`).
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from magshell.arrays import FloatArray, IntArray
 from magshell.compiled import inline
-from magshell.shell.interpolation import Interpolation
+from magshell.shell.geometry import Interpolation
 from magshell.shell.point import ENHANCED, PHI, Q1, U1, W1, Q, W
+
+
+class Layout(NamedTuple):
+    """How many of an element's nodes carry each field, and its number of enhanced modes."""
+
+    u: int
+    w: int
+    phi: int
+    q: int
+    modes: int
+
+
+@inline
+def place(component: int, node: int, layout: Layout) -> int:
+    """Place of a node's component (column of the nodal arrays) among the element's values; with ten: of α."""
+    if component < 3:
+        return component * layout.u + node
+    if component < 6:
+        return 3 * layout.u + (component - 3) * layout.w + node
+    if component == 6:
+        return 3 * layout.u + 3 * layout.w + node
+    return 3 * layout.u + 3 * layout.w + layout.phi + (component - 7) * layout.q + node
+
+
+@inline
+def carriers(component: int, layout: Layout) -> int:
+    """Number of nodes that carry a component."""
+    return layout.u if component < 3 else layout.w if component < 6 else layout.phi if component == 6 else layout.q
 
 
 @inline
@@ -33,74 +63,74 @@ def gather(
     phi: FloatArray,
     q: FloatArray,
     alpha: FloatArray,
-    rest: int,
+    layout: Layout,
     v: FloatArray,
 ) -> None:
     """Fill v with the element's values; quaternions are aligned to the first node's hemisphere."""
-    count = nodes.size
     first = q[nodes[0]]
-    for n in range(count):
-        for i in range(3):
-            v[i * count + n] = u[nodes[n], i]
-    at = 3 * count
-    for n in range(rest):
+    for i in range(3):
+        at_u, at_w = place(i, 0, layout), place(3 + i, 0, layout)
+        for n in range(layout.u):
+            v[at_u + n] = u[nodes[n], i]
+        for n in range(layout.w):
+            v[at_w + n] = w[nodes[n], i]
+    at = place(6, 0, layout)
+    for n in range(layout.phi):
+        v[at + n] = phi[nodes[n]]
+    at = place(7, 0, layout)
+    for n in range(layout.q):
         node = nodes[n]
-        for i in range(3):
-            v[at + i * rest + n] = w[node, i]
-        v[at + 3 * rest + n] = phi[node]
         dot = first[0] * q[node, 0] + first[1] * q[node, 1] + first[2] * q[node, 2] + first[3] * q[node, 3]
         sign = -1.0 if dot < 0.0 else 1.0
         for c in range(4):
-            v[at + (4 + c) * rest + n] = sign * q[node, c]
-    at += 8 * rest
-    modes = alpha.shape[0]
-    for m in range(modes):
+            v[at + c * layout.q + n] = sign * q[node, c]
+    at += 4 * layout.q
+    for m in range(layout.modes):
         for i in range(3):
-            v[at + i * modes + m] = alpha[m, i]
+            v[at + i * layout.modes + m] = alpha[m, i]
 
 
 @inline
-def point_values(
-    shape: Interpolation, p: int, director: FloatArray, enhancement: FloatArray, v: FloatArray, x: FloatArray
-) -> None:
-    """x = G v at point p."""
-    count, rest, modes = shape.du.shape[2], shape.rest.shape[1], enhancement.size
+def point_values(shape: Interpolation, e: int, p: int, layout: Layout, v: FloatArray, x: FloatArray) -> None:
+    """x = G v at point p of element e."""
     for i in range(3):
+        at_u, at_w = place(i, 0, layout), place(3 + i, 0, layout)
+        at_α = place(7, 0, layout) + 4 * layout.q + i * layout.modes
         s1, s2 = 0.0, 0.0
-        for n in range(count):
-            s1 += shape.du[p, 0, n] * v[i * count + n]
-            s2 += shape.du[p, 1, n] * v[i * count + n]
-        x[U1 + i], x[U1 + 3 + i] = s1, s2
-        at = 3 * count + i * rest
+        for n in range(layout.u):
+            s1 += shape.u[e, p, 0, n] * v[at_u + n]
+            s2 += shape.u[e, p, 1, n] * v[at_u + n]
+        e1, e2, e3 = 0.0, 0.0, 0.0
+        for m in range(layout.modes):
+            e1 += shape.enhancement[e, p, 0, m] * v[at_α + m]
+            e2 += shape.enhancement[e, p, 1, m] * v[at_α + m]
+            e3 += shape.enhancement[e, p, 2, m] * v[at_α + m]
+        x[U1 + i], x[U1 + 3 + i], x[ENHANCED + i] = s1 + e1, s2 + e2, e3
         s0, s1, s2 = 0.0, 0.0, 0.0
-        for n in range(rest):
-            s0 += director[0, n] * v[at + n]
-            s1 += director[1, n] * v[at + n]
-            s2 += director[2, n] * v[at + n]
+        for n in range(layout.w):
+            s0 += shape.director[e, p, 0, n] * v[at_w + n]
+            s1 += shape.director[e, p, 1, n] * v[at_w + n]
+            s2 += shape.director[e, p, 2, n] * v[at_w + n]
         x[W + i], x[W1 + i], x[W1 + 3 + i] = s0, s1, s2
-        s0 = 0.0
-        for m in range(modes):
-            s0 += enhancement[m] * v[3 * count + 8 * rest + i * modes + m]
-        x[ENHANCED + i] = s0
-    at = 3 * count + 3 * rest
+    at = place(6, 0, layout)
     s0 = 0.0
-    for n in range(rest):
-        s0 += shape.rest[p, n] * v[at + n]
+    for n in range(layout.phi):
+        s0 += shape.phi[e, p, n] * v[at + n]
     x[PHI] = s0
     for c in range(4):
-        at = 3 * count + (4 + c) * rest
+        at = place(7 + c, 0, layout)
         s0, s1, s2 = 0.0, 0.0, 0.0
-        for n in range(rest):
-            s0 += shape.rest[p, n] * v[at + n]
-            s1 += shape.d_rest[p, 0, n] * v[at + n]
-            s2 += shape.d_rest[p, 1, n] * v[at + n]
+        for n in range(layout.q):
+            s0 += shape.rotation[e, p, 0, n] * v[at + n]
+            s1 += shape.rotation[e, p, 1, n] * v[at + n]
+            s2 += shape.rotation[e, p, 2, n] * v[at + n]
         x[Q + c], x[Q1 + c], x[Q1 + 4 + c] = s0, s1, s2
 
 
 @inline
-def spin_derivatives(v: FloatArray, count: int, rest: int, T: FloatArray) -> None:
-    """Fill T (rest, 4, 3): ∂(exp(ϑ/2) q)/∂ϑ at ϑ = 0 of each node's quaternion in v."""
-    at = 3 * count + 4 * rest
+def spin_derivatives(v: FloatArray, layout: Layout, T: FloatArray) -> None:
+    """Fill T (nodes, 4, 3): ∂(exp(ϑ/2) q)/∂ϑ at ϑ = 0 of each node's quaternion in v."""
+    at, rest = place(7, 0, layout), layout.q
     for n in range(rest):
         q0, q1, q2, q3 = v[at + n], v[at + rest + n], v[at + 2 * rest + n], v[at + 3 * rest + n]
         T[n, 0, 0], T[n, 0, 1], T[n, 0, 2] = -0.5 * q1, -0.5 * q2, -0.5 * q3
@@ -112,57 +142,65 @@ def spin_derivatives(v: FloatArray, count: int, rest: int, T: FloatArray) -> Non
 @inline
 def contract(
     shape: Interpolation,
+    e: int,
     p: int,
-    director: FloatArray,
-    enhancement: FloatArray,
+    layout: Layout,
     T: FloatArray,
     H: FloatArray,
     scratch: FloatArray,
     out: FloatArray,
 ) -> None:
-    """out += T̂ᵀGᵀ H at point p: rows of the point (31) become rows of the element, whatever the columns are."""
-    count, rest, modes, width = shape.du.shape[2], shape.rest.shape[1], enhancement.size, H.shape[1]
+    """out += T̂ᵀGᵀ H at point p of element e: rows of the point (31) become rows of the element, whatever the columns."""
+    width = H.shape[1]
     for i in range(3):
-        h1, h2 = H[U1 + i], H[U1 + 3 + i]
-        for n in range(count):
-            row, a1, a2 = out[i * count + n], shape.du[p, 0, n], shape.du[p, 1, n]
+        h1, h2, h3 = H[U1 + i], H[U1 + 3 + i], H[ENHANCED + i]
+        at = place(i, 0, layout)
+        for n in range(layout.u):
+            row, a1, a2 = out[at + n], shape.u[e, p, 0, n], shape.u[e, p, 1, n]
             for j in range(width):
                 row[j] += a1 * h1[j] + a2 * h2[j]
+        at = place(10, 0, layout) + i * layout.modes
+        for m in range(layout.modes):
+            row = out[at + m]
+            a1, a2, a = shape.enhancement[e, p, 0, m], shape.enhancement[e, p, 1, m], shape.enhancement[e, p, 2, m]
+            for j in range(width):
+                row[j] += a1 * h1[j] + a2 * h2[j] + a * h3[j]
         h, h1, h2 = H[W + i], H[W1 + i], H[W1 + 3 + i]
-        for n in range(rest):
-            row, a, a1, a2 = out[3 * count + i * rest + n], director[0, n], director[1, n], director[2, n]
+        at = place(3 + i, 0, layout)
+        for n in range(layout.w):
+            row = out[at + n]
+            a, a1, a2 = shape.director[e, p, 0, n], shape.director[e, p, 1, n], shape.director[e, p, 2, n]
             for j in range(width):
                 row[j] += a * h[j] + a1 * h1[j] + a2 * h2[j]
-        h = H[ENHANCED + i]
-        for m in range(modes):
-            row, a = out[3 * count + 7 * rest + i * modes + m], enhancement[m]
-            for j in range(width):
-                row[j] += a * h[j]
-    at = 3 * count + 4 * rest
-    for n in range(rest):
-        row, a, a1, a2 = out[at - rest + n], shape.rest[p, n], shape.d_rest[p, 0, n], shape.d_rest[p, 1, n]
-        h = H[PHI]
+    h, at = H[PHI], place(6, 0, layout)
+    for n in range(layout.phi):
+        row, a = out[at + n], shape.phi[e, p, n]
         for j in range(width):
             row[j] += a * h[j]
+    at = place(7, 0, layout)
+    for n in range(layout.q):
+        a, a1, a2 = shape.rotation[e, p, 0, n], shape.rotation[e, p, 1, n], shape.rotation[e, p, 2, n]
         for c in range(4):
             row, h, h1, h2 = scratch[c], H[Q + c], H[Q1 + c], H[Q1 + 4 + c]
             for j in range(width):
                 row[j] = a * h[j] + a1 * h1[j] + a2 * h2[j]
         s0, s1, s2, s3 = scratch[0], scratch[1], scratch[2], scratch[3]
         for i in range(3):
-            row, t0, t1, t2, t3 = out[at + i * rest + n], T[n, 0, i], T[n, 1, i], T[n, 2, i], T[n, 3, i]
+            row, t0, t1, t2, t3 = out[at + i * layout.q + n], T[n, 0, i], T[n, 1, i], T[n, 2, i], T[n, 3, i]
             for j in range(width):
                 row[j] += t0 * s0[j] + t1 * s1[j] + t2 * s2[j] + t3 * s3[j]
 
 
 @inline
-def add_radial_force(shape: Interpolation, p: int, g: FloatArray, v: FloatArray, radial: FloatArray) -> None:
-    """radial (rest,) += q · r_q of each node, from the gradient g at point p."""
-    count, rest = shape.du.shape[2], shape.rest.shape[1]
+def add_radial_force(
+    shape: Interpolation, e: int, p: int, layout: Layout, g: FloatArray, v: FloatArray, radial: FloatArray
+) -> None:
+    """radial (nodes,) += q · r_q of each node, from the gradient g at point p."""
     for c in range(4):
-        at = 3 * count + (4 + c) * rest
-        for n in range(rest):
-            r = shape.rest[p, n] * g[Q + c] + shape.d_rest[p, 0, n] * g[Q1 + c] + shape.d_rest[p, 1, n] * g[Q1 + 4 + c]
+        at = place(7 + c, 0, layout)
+        for n in range(layout.q):
+            r = shape.rotation[e, p, 0, n] * g[Q + c]
+            r += shape.rotation[e, p, 1, n] * g[Q1 + c] + shape.rotation[e, p, 2, n] * g[Q1 + 4 + c]
             radial[n] += v[at + n] * r
 
 

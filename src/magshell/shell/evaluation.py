@@ -33,21 +33,21 @@ class PointFields(NamedTuple):
 def evaluate(body: Body, state: State) -> PointFields:
     """Deformation gradient, micro-rotation and wryness."""
     geometry, shape, elements = body.geometry, body.shape, body.elements
-    corners = elements[:, : shape.rest.shape[1]]
-    a = geometry.A + np.einsum("pan,enx->epax", shape.du, state.u[elements])
-    w = np.einsum("epan,enx->epax", geometry.director, state.w[corners])
+    rest, stretch = elements[:, : shape.director.shape[-1]], elements[:, : shape.phi.shape[-1]]
+    a = geometry.A + np.einsum("epan,enx->epax", shape.u, state.u[elements])
+    w = np.einsum("epan,enx->epax", shape.director, state.w[rest])
     d, dd = geometry.D + w[:, :, 0], geometry.dD + w[:, :, 1:]
-    φ = np.einsum("pn,en->ep", shape.rest, state.phi[corners])
-    ā = np.einsum("epm,emx->epx", geometry.enhancement, state.alpha)
+    φ = np.einsum("epn,en->ep", shape.phi, state.phi[stretch])
+    enhanced = np.einsum("epam,emx->epax", shape.enhancement, state.alpha)
     z = geometry.z
     g_tangent = a[:, :, None] + z[:, None, None] * dd[:, :, None]
-    g_3 = (1.0 + 2.0 * z * φ[..., None])[..., None] * d[:, :, None] + ā[:, :, None]
-    g = np.concatenate([g_tangent, g_3[:, :, :, None]], axis=3)
+    g_3 = (1.0 + 2.0 * z * φ[..., None])[..., None] * d[:, :, None]
+    g = np.concatenate([g_tangent, g_3[:, :, :, None]], axis=3) + enhanced[:, :, None]
     F = np.einsum("epkax,epkay->epkxy", g, geometry.G)
-    q_nodes = state.q[corners]
+    q_nodes = state.q[rest]
     q_nodes = q_nodes * np.where(np.sum(q_nodes * q_nodes[:, :1], axis=-1, keepdims=True) < 0.0, -1.0, 1.0)
-    q = np.einsum("pn,enc->epc", shape.rest, q_nodes)
-    dq = np.einsum("pan,enc->epac", shape.d_rest, q_nodes)
+    q, dq = (np.einsum("epan,enc->epac", shape.rotation[:, :, rows], q_nodes) for rows in (slice(0, 1), slice(1, 3)))
+    q = q[:, :, 0]
     length = np.sum(q * q, axis=-1)
     kappa = 2.0 * rotation.product(rotation.conjugate(q)[:, :, None], dq)[..., 1:] / length[..., None, None]
     return PointFields(F, rotation.matrix(q), kappa)

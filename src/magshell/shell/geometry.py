@@ -1,4 +1,4 @@
-"""Geometry of the undeformed shell at the integration points: isoparametric 8-node surface, normals at the corners."""
+"""Functions and geometry of the undeformed shell at the integration points: isoparametric surface, nodal normals."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.shell.interpolation import Interpolation
-from magshell.shell.shape_functions import serendipity
+from magshell.shell.elements import ElementType
 
 
 class SectionGeometry(NamedTuple):
@@ -20,8 +19,6 @@ class SectionGeometry(NamedTuple):
         Covariant base A_α = X,α of the mid-surface, m.
     D, dD : ndarray, shape (elements, p, 3) and (elements, p, 2, 3)
         Unit director of the undeformed shell and its derivatives D,α.
-    director : ndarray, shape (elements, p, 3, corners)
-        Functions of the director displacement and their two derivatives.
     z : ndarray, shape (k,)
         Levels, m.
     G : ndarray, shape (elements, p, k, 3, 3)
@@ -30,23 +27,43 @@ class SectionGeometry(NamedTuple):
         det Q √A times all weights, m³.
     metric : ndarray, shape (elements, p, 2, 2)
         Σ_k volume G^α · G^β, m: all that the couple stress needs of the thickness.
-    enhancement : ndarray, shape (elements, p, modes)
-        Enhanced modes (√A at the centre / √A) (ξ, η): their integral over the element vanishes.
     """
 
     A: FloatArray
     D: FloatArray
     dD: FloatArray
-    director: FloatArray
     z: FloatArray
     G: FloatArray
     volume: FloatArray
     metric: FloatArray
+
+
+class Interpolation(NamedTuple):
+    """From an element's values to what its points see; rows of functions are the value and its two parent derivatives.
+
+    Attributes
+    ----------
+    u : ndarray, shape (elements, p, 2, 8)
+        Derivatives of the functions of u.
+    director : ndarray, shape (elements, p, 3, nodes)
+        Functions of the director displacement w.
+    phi : ndarray, shape (elements, p, nodes)
+        Functions of the thickness stretch φ.
+    rotation : ndarray, shape (elements, p, 3, nodes)
+        Functions of the quaternions.
+    enhancement : ndarray, shape (elements, p, 3, modes)
+        What the enhanced modes add to g_1, g_2, g_3: (√A at the centre / √A) f with ∫ f dξ dη = 0.
+    """
+
+    u: FloatArray
+    director: FloatArray
+    phi: FloatArray
+    rotation: FloatArray
     enhancement: FloatArray
 
 
 def director_functions(normals: FloatArray, N: FloatArray, dN: FloatArray) -> FloatArray:
-    r"""Functions Ñ_I = N_I / ν and their derivatives, with ν = |Σ N_I D_I|: (elements, points, 3, corners).
+    r"""Functions Ñ_I = N_I / ν and their derivatives, with ν = |Σ N_I D_I|: (elements, points, 3, nodes).
 
     The undeformed director is the interpolated normal made a unit vector, D = Σ Ñ_I D_I, and d = Σ Ñ_I (D_I + w_I).
     A rigid rotation w_I = (R - I) D_I then gives d = R D exactly at every point. (With the surface's own normal at the
@@ -56,11 +73,11 @@ def director_functions(normals: FloatArray, N: FloatArray, dN: FloatArray) -> Fl
 
     Parameters
     ----------
-    normals : ndarray, shape (elements, corners, 3)
-    N, dN : ndarray, shape (points, corners) and (points, 2, corners)
+    normals : ndarray, shape (elements, nodes, 3)
+    N, dN : ndarray, shape (elements, points, nodes) and (elements, points, 2, nodes)
     """
-    mean = np.einsum("pn,enx->epx", N, normals)
-    slope = np.einsum("pan,enx->epax", dN, normals)
+    mean = np.einsum("epn,enx->epx", N, normals)
+    slope = np.einsum("epan,enx->epax", dN, normals)
     ν = np.linalg.norm(mean, axis=-1)
     dν = np.einsum("epax,epx->epa", slope, mean) / ν[..., None]
     values = N / ν[..., None]
@@ -68,40 +85,76 @@ def director_functions(normals: FloatArray, N: FloatArray, dN: FloatArray) -> Fl
     return np.concatenate([values[:, :, None], derivatives], axis=2)
 
 
+def interpolation(node_coordinates: FloatArray, normals: FloatArray, element: ElementType) -> Interpolation:
+    """Functions of an element type at the points of its rule.
+
+    Parameters
+    ----------
+    node_coordinates, normals : ndarray, shape (elements, 8, 3)
+        m; unit normals at the nodes, shared by the elements that meet there.
+    element : ElementType
+    """
+    parent = element.rule.points
+    u = element.functions(8, parent, node_coordinates)
+    rest = element.functions(element.rest_nodes, parent, node_coordinates)
+    φ = element.functions(element.stretch_nodes, parent, node_coordinates)
+    director = director_functions(normals[:, : element.rest_nodes], rest.values, rest.derivatives)
+    rotation = np.concatenate([rest.values[:, :, None], rest.derivatives], axis=2)
+    enhancement = np.zeros((*u.values.shape[:2], 3, len(element.modes)))
+    if element.modes:
+        centre = element.functions(8, np.zeros((1, 2)), node_coordinates)
+        ratio = _area(centre.derivatives, node_coordinates) / _area(u.derivatives, node_coordinates)
+        for number, mode in enumerate(element.modes):
+            f = parent[:, 0] ** mode.xi * parent[:, 1] ** mode.eta
+            mean = element.rule.weights @ f / element.rule.weights.sum()
+            enhancement[:, :, mode.column - 1, number] = ratio * (f - mean)
+    return Interpolation(
+        *(np.ascontiguousarray(a) for a in (u.derivatives, director, φ.values, rotation, enhancement))
+    )
+
+
+def _area(derivatives: FloatArray, node_coordinates: FloatArray) -> FloatArray:
+    """√A (elements, points)."""
+    A = np.einsum("epan,enx->epax", derivatives, node_coordinates)
+    return np.asarray(np.linalg.norm(np.cross(A[:, :, 0], A[:, :, 1]), axis=-1))
+
+
 def section_geometry(
-    node_coordinates: FloatArray, normals: FloatArray, shape: Interpolation, thickness: float, levels: int
+    node_coordinates: FloatArray,
+    normals: FloatArray,
+    shape: Interpolation,
+    weights: FloatArray,
+    thickness: float,
+    levels: int,
 ) -> SectionGeometry:
     """Geometry at the points of a surface rule, with a Gauss rule of `levels` points through the thickness.
 
     Parameters
     ----------
-    node_coordinates : ndarray, shape (elements, 8, 3)
-        m.
-    normals : ndarray, shape (elements, corners, 3)
-        Unit normals at the corners, shared by the elements that meet there.
+    node_coordinates, normals : ndarray, shape (elements, 8, 3)
+        m; unit normals at the nodes, shared by the elements that meet there.
     shape : Interpolation
+    weights : ndarray, shape (p,)
+        Of the surface rule, on the parent square.
     thickness : float
         m.
     levels : int
         Gauss points through the thickness.
     """
-    A = np.einsum("pan,enx->epax", shape.du, node_coordinates)
-    director = director_functions(normals, shape.rest, shape.d_rest)
-    D, dD = (np.einsum("epan,enx->epax", director[:, :, rows], normals) for rows in (slice(0, 1), slice(1, 3)))
+    A = np.einsum("epan,enx->epax", shape.u, node_coordinates)
+    rest = shape.director.shape[-1]
+    D, dD = (
+        np.einsum("epan,enx->epax", shape.director[:, :, rows], normals[:, :rest])
+        for rows in (slice(0, 1), slice(1, 3))
+    )
     z_parent, z_weights = np.polynomial.legendre.leggauss(levels)
     z = 0.5 * thickness * z_parent
     covariant = A[:, :, None] + z[:, None, None] * dD[:, :, None]
     base = np.concatenate([covariant, np.broadcast_to(D[:, :, None], (*covariant.shape[:3], 1, 3))], axis=3)
     G = np.swapaxes(np.linalg.inv(base), -1, -2)
-    volume = np.linalg.det(base) * (0.5 * thickness * z_weights) * shape.weights[:, None]
+    volume = np.linalg.det(base) * (0.5 * thickness * z_weights) * weights[:, None]
     metric = np.einsum("epk,epkax,epkbx->epab", volume, G[..., :2, :], G[..., :2, :])
-    area = np.linalg.norm(np.cross(A[:, :, 0], A[:, :, 1]), axis=-1)
-    centre = np.einsum("pan,enx->epax", serendipity(np.zeros((1, 2)))[1], node_coordinates)
-    centre_area = np.linalg.norm(np.cross(centre[:, :, 0], centre[:, :, 1]), axis=-1)
-    enhancement = (centre_area / area)[..., None] * shape.parent
-    return SectionGeometry(
-        *(np.ascontiguousarray(a) for a in (A, D[:, :, 0], dD, director, z, G, volume, metric, enhancement))
-    )
+    return SectionGeometry(*(np.ascontiguousarray(a) for a in (A, D[:, :, 0], dD, z, G, volume, metric)))
 
 
 def least_shifts(geometry: SectionGeometry, thickness: float) -> FloatArray:
@@ -120,9 +173,9 @@ def unit_forces(geometry: SectionGeometry, shape: Interpolation) -> FloatArray:
     """
     volume, z = geometry.volume, np.abs(geometry.z)
     leg = np.linalg.norm(geometry.G, axis=-1)
-    u = np.einsum("pan,epka,epk->en", np.abs(shape.du), leg[..., :2], volume)
-    w = np.einsum("epan,epka,k,epk->en", np.abs(geometry.director[:, :, 1:]), leg[..., :2], z, volume)
-    w += np.einsum("epn,epk,epk->en", np.abs(geometry.director[:, :, 0]), leg[..., 2], volume)
-    φ = 2.0 * np.einsum("pn,epk,k,epk->en", np.abs(shape.rest), leg[..., 2], z, volume)
-    ω = np.einsum("pn,epk->en", np.abs(shape.rest), volume)
+    u = np.einsum("epan,epka,epk->en", np.abs(shape.u), leg[..., :2], volume)
+    w = np.einsum("epan,epka,k,epk->en", np.abs(shape.director[:, :, 1:]), leg[..., :2], z, volume)
+    w += np.einsum("epn,epk,epk->en", np.abs(shape.director[:, :, 0]), leg[..., 2], volume)
+    φ = 2.0 * np.einsum("epn,epk,k,epk->en", np.abs(shape.phi), leg[..., 2], z, volume)
+    ω = np.einsum("epn,epk->en", np.abs(shape.rotation[:, :, 0]), volume)
     return np.array([np.linalg.norm(forces) for forces in (u, w, φ, ω)])

@@ -10,22 +10,24 @@ from typing import NamedTuple
 
 import numpy as np
 
-from magshell.arrays import FloatArray, IntArray
+from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.compiled import Kernel, inline
 from magshell.magnetics.law import Coupling
 from magshell.materials.law import Material
 from magshell.shell.element import (
+    Layout,
     add_radial_force,
+    carriers,
     condense,
     contract,
     gather,
     padded,
+    place,
     point_values,
     spin_derivatives,
     transpose,
 )
-from magshell.shell.geometry import SectionGeometry
-from magshell.shell.interpolation import Interpolation
+from magshell.shell.geometry import Interpolation, SectionGeometry
 from magshell.shell.point import SIZE, workspace
 from magshell.shell.rotation import LAST, NEXT
 from magshell.shell.section import predicted_stress, section
@@ -40,6 +42,7 @@ class Body(NamedTuple):
     Attributes
     ----------
     elements : ndarray, shape (elements, 8)
+    layout : Layout
     geometry : SectionGeometry
     shape : Interpolation
     remanence : ndarray, shape (elements, points, 3)
@@ -47,6 +50,7 @@ class Body(NamedTuple):
     """
 
     elements: IntArray
+    layout: Layout
     geometry: SectionGeometry
     shape: Interpolation
     remanence: FloatArray
@@ -70,6 +74,8 @@ class Equations(NamedTuple):
         Equation, -1 where fixed or absent.
     rank : ndarray, shape (nodes, 10)
         Equation minus the node's first one.
+    whole : ndarray of bool, shape (nodes,)
+        Whether every component that the node carries is free.
     indptr : ndarray, shape (equations + 1,)
         Column pointers of the matrix.
     offset : ndarray, shape (elements, 8, 8)
@@ -84,6 +90,7 @@ class Equations(NamedTuple):
     local_component: IntArray
     number: IntArray
     rank: IntArray
+    whole: AnyArray
     indptr: IntArray
     offset: IntArray
     frame_of: IntArray
@@ -120,17 +127,17 @@ class Assembled(NamedTuple):
 
 
 @inline
-def _turn_rows(nodes: IntArray, equations: Equations, rest: int, rows: FloatArray) -> None:
+def _turn_rows(nodes: IntArray, equations: Equations, layout: Layout, rows: FloatArray) -> None:
     """Rotate the rows of each node's vectors into the node's own frame."""
-    count, width = nodes.size, rows.shape[1]
-    for n in range(count):
-        for field in range(3):
+    width = rows.shape[1]
+    for field in range(3):
+        component = 0 if field == 0 else 3 if field == 1 else 7
+        stride = carriers(component, layout)
+        for n in range(stride):
             frame = equations.frame_of[nodes[n], field]
-            if frame < 0 or (field > 0 and n >= rest):
+            if frame < 0:
                 continue
-            R = equations.frames[frame]
-            stride = count if field == 0 else rest
-            at = n if field == 0 else 3 * count + n if field == 1 else 3 * count + 4 * rest + n
+            R, at = equations.frames[frame], place(component, n, layout)
             for j in range(width):
                 a0, a1, a2 = rows[at, j], rows[at + stride, j], rows[at + 2 * stride, j]
                 for i in range(3):
@@ -147,23 +154,17 @@ def _one_rotation_held(number: IntArray) -> bool:
 
 
 @inline
-def _add_spin_transport(r: FloatArray, spins: int, rest: int, n: int, Kt: FloatArray) -> None:
+def _add_spin_transport(r: FloatArray, layout: Layout, n: int, Kt: FloatArray) -> None:
     """K -= [r]×/2 on a node's spins: from the chart exp(ϑ) R̃ to the spins of the new state.
 
     The node's couples add up to its reaction, which vanishes unless a rotation is held, and does not meet free
     rotations unless exactly one is.
     """
     for i in range(3):
-        j, k = spins + NEXT[i] * rest + n, spins + LAST[i] * rest + n
-        half = 0.5 * r[spins + i * rest + n]
+        j, k = place(7 + NEXT[i], n, layout), place(7 + LAST[i], n, layout)
+        half = 0.5 * r[place(7 + i, n, layout)]
         Kt[k, j] += half
         Kt[j, k] -= half
-
-
-@inline
-def _value(component: int, node: int, count: int, rest: int) -> int:
-    """Place of a node's component among the element's values."""
-    return component * count + node if component < 3 else 3 * count + (component - 3) * rest + node
 
 
 @inline
@@ -171,7 +172,7 @@ def _scatter_tangent(
     e: int,
     nodes: IntArray,
     equations: Equations,
-    rest: int,
+    layout: Layout,
     Kt: FloatArray,
     imposed: FloatArray,
     data: FloatArray,
@@ -181,31 +182,38 @@ def _scatter_tangent(
 
     The rows of one node lie side by side in a column.
     """
-    count = nodes.size
-    for J in range(count):
-        for component in range(COMPONENTS if J < rest else 3):
-            number, K = equations.number[nodes[J], component], Kt[_value(component, J, count, rest)]
+    nu, nw, nφ, nq = layout.u, layout.w, layout.phi, layout.q
+    at_w, at_φ, at_q = place(3, 0, layout), place(6, 0, layout), place(7, 0, layout)
+    for component in range(COMPONENTS):
+        for J in range(carriers(component, layout)):
+            number, K = equations.number[nodes[J], component], Kt[place(component, J, layout)]
             if number < 0:
                 if imposed[nodes[J], component] != 0.0:
-                    for I in range(count):
-                        for c in range(COMPONENTS if I < rest else 3):
-                            condensed[nodes[I], c] += K[_value(c, I, count, rest)] * imposed[nodes[J], component]
+                    for c in range(COMPONENTS):
+                        for I in range(carriers(c, layout)):
+                            condensed[nodes[I], c] += K[place(c, I, layout)] * imposed[nodes[J], component]
                 continue
             start = equations.indptr[number]
-            for I in range(count):
-                at, rank = start + equations.offset[e, J, I], equations.rank[nodes[I]]
-                if I < rest and rank[COMPONENTS - 1] == COMPONENTS - 1:
+            for I in range(nu):
+                node, at = nodes[I], start + equations.offset[e, J, I]
+                if equations.whole[node]:
                     for c in range(3):
-                        data[at + c] += K[c * count + I]
-                    for c in range(COMPONENTS - 3):
-                        data[at + 3 + c] += K[3 * count + c * rest + I]
-                elif I >= rest and rank[2] == 2:
-                    for c in range(3):
-                        data[at + c] += K[c * count + I]
+                        data[at + c] += K[c * nu + I]
+                    at += 3
+                    if I < nw:
+                        for c in range(3):
+                            data[at + c] += K[at_w + c * nw + I]
+                        at += 3
+                    if I < nφ:
+                        data[at] += K[at_φ + I]
+                        at += 1
+                    if I < nq:
+                        for c in range(3):
+                            data[at + c] += K[at_q + c * nq + I]
                 else:
-                    for c in range(COMPONENTS if I < rest else 3):
-                        if equations.number[nodes[I], c] >= 0:
-                            data[at + rank[c]] += K[_value(c, I, count, rest)]
+                    for c in range(COMPONENTS):
+                        if equations.number[node, c] >= 0 and I < carriers(c, layout):
+                            data[at + equations.rank[node, c]] += K[place(c, I, layout)]
 
 
 @Kernel
@@ -225,11 +233,10 @@ def assemble(
 ) -> tuple[int, float]:
     """Residual and, with `tangent`, the condensed tangent; returns the first inverted element (or -1), det F there."""
     shape, geometry = body.shape, body.geometry
-    points, count, rest = shape.du.shape[0], shape.du.shape[2], shape.rest.shape[1]
-    modes = geometry.enhancement.shape[2]
-    full, size = 3 * count + 8 * rest + 3 * modes, 3 * count + 7 * rest + 3 * modes
-    nodal = size - 3 * modes
-    spins = 3 * count + 4 * rest
+    layout, points, rest, modes = body.layout, geometry.volume.shape[1], body.layout.q, body.layout.modes
+    nodal = place(10, 0, layout)
+    size = nodal + 3 * modes
+    full = size + rest
     v, x, w, T, radial = np.zeros(full), np.zeros(SIZE), workspace(), np.zeros((rest, 4, 3)), np.zeros(rest)
     narrow, wide = padded(SIZE), padded(size)
     g, g_mixed, H = np.zeros((SIZE, 2)), np.zeros(SIZE), np.zeros((SIZE, narrow))
@@ -250,27 +257,26 @@ def assemble(
     out.enhancement_residual[0] = 0.0
     for e in range(len(body.elements)):
         nodes = body.elements[e]
-        gather(nodes, state.u, state.w, state.phi, state.q, state.alpha[e], rest, v)
-        spin_derivatives(v, count, rest, T)
+        gather(nodes, state.u, state.w, state.phi, state.q, state.alpha[e], layout, v)
+        spin_derivatives(v, layout, T)
         r[:, :] = 0.0
         Kt[:, :] = 0.0
         radial[:] = 0.0
         for p in range(points):
-            director, modes_here = geometry.director[e, p], geometry.enhancement[e, p]
-            point_values(shape, p, director, modes_here, v, x)
+            point_values(shape, e, p, layout, v, x)
             J = section(
                 material, couple_modulus, coupling, B, geometry, body.remanence, e, p, x,
                 stresses.P[e, p], stresses.kappa[e, p], mixed, tangent, w, g, g_mixed, H,
             )  # fmt: skip
             if not J > 0.0:
                 return e, J
-            contract(shape, p, director, modes_here, T, g, scratch_2, r)
+            contract(shape, e, p, layout, T, g, scratch_2, r)
             if tangent:
                 GH[:, :] = 0.0
-                contract(shape, p, director, modes_here, T, H, scratch, GH)
+                contract(shape, e, p, layout, T, H, scratch, GH)
                 transpose(GH, HG)
-                contract(shape, p, director, modes_here, T, HG, scratch, Kt)
-                add_radial_force(shape, p, g_mixed, v, radial)
+                contract(shape, e, p, layout, T, HG, scratch, Kt)
+                add_radial_force(shape, e, p, layout, g_mixed, v, radial)
         for l in range(nodal):
             c = kind_of[l]
             kind = 0 if c < 3 else 1 if c < 6 else 2 if c == 6 else 3
@@ -282,58 +288,55 @@ def assemble(
             out.enhancement_residual[0] += r_sum[l] ** 2
         if tangent:
             for n in range(rest):
-                for i in range(3):
-                    Kt[spins + i * rest + n, spins + i * rest + n] -= 0.25 * radial[n]
+                for c in range(7, 10):
+                    at = place(c, n, layout)
+                    Kt[at, at] -= 0.25 * radial[n]
                 if _one_rotation_held(equations.number[nodes[n]]):
-                    _add_spin_transport(r_sum, spins, rest, n, Kt)
+                    _add_spin_transport(r_sum, layout, n, Kt)
             for l in range(size):
                 r[l, 0] = r_sum[l]
             if not condense(Kt, r_sum, nodal, out.gain[e], out.offset[e], factor):
                 return e, 0.0
             for l in range(size):
                 r[l, 1] = r_sum[l]
-            _turn_rows(nodes, equations, rest, Kt)
-            _turn_rows(nodes, equations, rest, Kt.T)
+            _turn_rows(nodes, equations, layout, Kt)
+            _turn_rows(nodes, equations, layout, Kt.T)
         else:
             for l in range(size):
                 r[l, 0] = r_sum[l]
-        _turn_rows(nodes, equations, rest, r)
+        _turn_rows(nodes, equations, layout, r)
         for l in range(nodal):
             out.residual[nodes[equations.local_node[l]], kind_of[l]] += r[l, 0]
         if tangent:
             for l in range(nodal):
                 out.condensed[nodes[equations.local_node[l]], kind_of[l]] += r[l, 1]
-            _scatter_tangent(e, nodes, equations, rest, Kt, imposed, out.data, out.condensed)
+            _scatter_tangent(e, nodes, equations, layout, Kt, imposed, out.data, out.condensed)
     return -1, 1.0
 
 
 @inline
-def _gather_increment(nodes: IntArray, increment: FloatArray, count: int, rest: int, dv: FloatArray) -> None:
+def _gather_increment(nodes: IntArray, increment: FloatArray, layout: Layout, dv: FloatArray) -> None:
     """Fill dv with an element's nodal increments, spins at the end."""
-    for n in range(count):
-        for i in range(3):
-            dv[i * count + n] = increment[nodes[n], i]
-    for n in range(rest):
-        for i in range(3):
-            dv[3 * count + i * rest + n] = increment[nodes[n], 3 + i]
-            dv[3 * count + (4 + i) * rest + n] = increment[nodes[n], 7 + i]
-        dv[3 * count + 3 * rest + n] = increment[nodes[n], 6]
+    for component in range(COMPONENTS):
+        at = place(component, 0, layout)
+        for n in range(carriers(component, layout)):
+            dv[at + n] = increment[nodes[n], component]
 
 
 @Kernel
 def recover_enhancement(
     elements: IntArray,
-    rest: int,
+    layout: Layout,
     increment: FloatArray,
     gain: FloatArray,
     offset: FloatArray,
     d_alpha: FloatArray,
 ) -> None:
     """Fill Δα (elements, modes, 3) = -offset - gain Δv."""
-    count, modes = elements.shape[1], d_alpha.shape[1]
-    dv = np.zeros(3 * count + 7 * rest)
+    modes = layout.modes
+    dv = np.zeros(place(10, 0, layout))
     for e in range(len(elements)):
-        _gather_increment(elements[e], increment, count, rest, dv)
+        _gather_increment(elements[e], increment, layout, dv)
         for m in range(modes):
             for i in range(3):
                 a = i * modes + m
@@ -353,20 +356,18 @@ def predict_stresses(
     stresses: Stresses,
 ) -> None:
     """Fill the stresses predicted linearly from `state` for a nodal increment (nodes, 10) and Δα."""
-    shape, geometry = body.shape, body.geometry
-    points, count, rest = shape.du.shape[0], shape.du.shape[2], shape.rest.shape[1]
-    modes = geometry.enhancement.shape[2]
-    full = 3 * count + 8 * rest + 3 * modes
-    v, dv, spins = np.zeros(full), np.zeros(full), np.zeros(3 * count + 7 * rest)
+    shape, geometry, layout = body.shape, body.geometry, body.layout
+    modes, rest, at = layout.modes, layout.q, place(7, 0, layout)
+    full = place(10, 0, layout) + rest + 3 * modes
+    v, dv, spins = np.zeros(full), np.zeros(full), np.zeros(place(10, 0, layout))
     x, dx, w, T = np.zeros(SIZE), np.zeros(SIZE), workspace(), np.zeros((rest, 4, 3))
-    at = 3 * count + 4 * rest
     for e in range(len(body.elements)):
         nodes = body.elements[e]
-        gather(nodes, state.u, state.w, state.phi, state.q, state.alpha[e], rest, v)
-        _gather_increment(nodes, increment, count, rest, spins)
+        gather(nodes, state.u, state.w, state.phi, state.q, state.alpha[e], layout, v)
+        _gather_increment(nodes, increment, layout, spins)
         for l in range(at):
             dv[l] = spins[l]
-        spin_derivatives(v, count, rest, T)
+        spin_derivatives(v, layout, T)
         for n in range(rest):
             for c in range(4):
                 s = 0.0
@@ -376,7 +377,7 @@ def predict_stresses(
         for m in range(modes):
             for i in range(3):
                 dv[at + 4 * rest + i * modes + m] = d_alpha[e, m, i]
-        for p in range(points):
-            point_values(shape, p, geometry.director[e, p], geometry.enhancement[e, p], v, x)
-            point_values(shape, p, geometry.director[e, p], geometry.enhancement[e, p], dv, dx)
+        for p in range(geometry.volume.shape[1]):
+            point_values(shape, e, p, layout, v, x)
+            point_values(shape, e, p, layout, dv, dx)
             predicted_stress(material, geometry, e, p, x, dx, w, stresses.P[e, p], stresses.kappa[e, p])

@@ -70,6 +70,46 @@ def serendipity(parent: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]
     return values, derivatives, second
 
 
+def quadratic_complete(parent: FloatArray, coordinates: FloatArray) -> tuple[FloatArray, FloatArray]:
+    r"""Eight-node functions that hold every quadratic polynomial of the position, for each element its own.
+
+    On a quadrilateral with straight sides, X = X_0 + a ξ + b η + c ξη, a quadratic polynomial f has the term
+    ½ D²f[c, c] ξ²η² that the serendipity functions lack; they put ξ² + η² - 1 in its place, which differs from it by
+    the bubble (1 - ξ²)(1 - η²). With c = α a + β b the missing coefficient follows from two that they do have,
+    ½ D²f[c, c] = ½ (α D²f[a, c] + β D²f[b, c]), those of ξ²η and ξη². So
+
+        N̂_I = N_I + ½ (α e_I + β f_I) (1 - ξ²)(1 - η²),      e_I, f_I: coefficients of ξ²η and ξη² in N_I.
+
+    On parallelograms c = 0 and N̂ = N. Out of the plane of a and b, c is projected onto it. (The completeness of
+    eight-node elements: MacNeal and Harder, Int. J. Numer. Methods Engrg. 33, 1992.)
+
+    Parameters
+    ----------
+    parent : ndarray, shape (points, 2)
+    coordinates : ndarray, shape (elements, 8, 3)
+
+    Returns
+    -------
+    values : ndarray, shape (elements, points, 8)
+    derivatives : ndarray, shape (elements, points, 2, 8)
+    """
+    _, d_centre, d2_centre = serendipity(np.zeros((1, 2)))
+    base = np.einsum("an,enx->eax", d_centre[0], coordinates)
+    twist = np.einsum("n,enx->ex", d2_centre[0, 2], coordinates)
+    metric = np.einsum("eax,ebx->eab", base, base)
+    share = np.linalg.solve(metric, np.einsum("eax,ex->ea", base, twist)[..., None])[..., 0]
+    corners, mid_sides = 0.25 * CORNERS[:, ::-1], -0.5 * MID_SIDES[:, ::-1]
+    missing = 0.5 * share @ np.vstack([corners, mid_sides]).T
+    xi, eta = parent.T
+    bubble = (1 - xi**2) * (1 - eta**2)
+    d_bubble = np.stack([-2 * xi * (1 - eta**2), -2 * eta * (1 - xi**2)], axis=1)
+    values, derivatives, _ = serendipity(parent)
+    return (
+        values + bubble[:, None] * missing[:, None],
+        derivatives + d_bubble[:, :, None] * missing[:, None, None],
+    )
+
+
 def gauss_legendre(count: int) -> tuple[FloatArray, FloatArray]:
     """Tensor rule of count × count points: parent points (count², 2) and weights (count²,)."""
     points, weights = np.polynomial.legendre.leggauss(count)
