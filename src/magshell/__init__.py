@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from magshell import mesh, problem
     from magshell.errors import InputError, MeshError, SolveError
+    from magshell.loads import Force, Moment
     from magshell.magnetics import (
         DeformationGradientEnergy,
         MicropolarCouple,
@@ -27,6 +28,7 @@ __version__ = "0.1.0"
 
 _HOME = {
     "magshell.errors": ("InputError", "MeshError", "SolveError"),
+    "magshell.loads": ("Force", "Moment"),
     "magshell.magnetics": (
         "DeformationGradientEnergy",
         "MicroRotationEnergy",
@@ -44,6 +46,7 @@ _NAMES = {name: home for home, names in _HOME.items() for name in names}
 __all__ = [
     "Clamp",
     "DeformationGradientEnergy",
+    "Force",
     "InputError",
     "MeshError",
     "MicroRotationEnergy",
@@ -51,6 +54,7 @@ __all__ = [
     "MicropolarMooneyRivlin",
     "MicropolarNeoHookean",
     "Model",
+    "Moment",
     "Observer",
     "Path",
     "Prescribe",
