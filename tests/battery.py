@@ -16,6 +16,7 @@ from scipy.spatial.transform import Rotation
 
 from magshell import magnetics, materials
 from magshell.assembly import Discretisation
+from magshell.loads import nodal_forces
 from magshell.magnetics import UniformField, remanence
 from magshell.mesh import Mesh, rectangle
 from magshell.model import Shell
@@ -122,11 +123,16 @@ class Unsupported:
     field: UniformField
     coupling: object
     supports: tuple = ()
+    loads: tuple = ()
 
     @cached_property
     def constraints(self):
         mesh = self.shell.mesh
         return resolve(mesh, self.supports, self.shell.element.carriers(mesh.elements, len(mesh.points)))
+
+    @cached_property
+    def nodal_loads(self):
+        return nodal_forces(self.shell.mesh, self.shell.element, self.loads)
 
     @cached_property
     def normals(self):
@@ -142,12 +148,13 @@ def free_body(
     remanent=REMANENCE,
     field=FIELD,
     supports=(),
+    loads=(),
     ordering=lambda graph: np.arange(graph.shape[0]),
 ):
     """Discretisation of a mesh that only `supports` hold; `remanent` is a vector or one vector per element."""
     vectors = np.broadcast_to(np.asarray(remanent, dtype=float), (len(mesh.elements), 3))
     shell = Shell(mesh, thickness, material or example(MATERIAL), remanence.per_element(vectors))
-    body = Unsupported(shell, UniformField(field), coupling or example(COUPLING), tuple(supports))
+    body = Unsupported(shell, UniformField(field), coupling or example(COUPLING), tuple(supports), tuple(loads))
     return Discretisation(body, ordering)
 
 

@@ -48,7 +48,7 @@ class Assembly(NamedTuple):
     residual : ndarray, shape (nodes, 10)
         Internal minus external forces in the nodes' frames; at held components the reactions.
     relative : dict of str to float
-        Residual by kind of unknown over the elements' internal and magnetic forces of that kind.
+        Residual by kind of unknown over the elements' internal and magnetic forces and the loads of that kind.
     """
 
     matrix: sp.csc_array | None
@@ -123,12 +123,17 @@ class Discretisation:
             (self._out.data, self.pattern.indices, self.pattern.indptr.astype(self.pattern.indices.dtype)),
             shape=(self.dofs, self.dofs),
         )
+        self._loads = self.to_frames(model.nodal_loads)
+        self._load_squares = np.array([np.sum(self._loads[:, columns] ** 2) for columns in _COLUMNS])
+        self._transport = self._spin_transport()
 
     def _number_equations(self, ordering: Ordering) -> None:
         mesh, constraints = self.mesh, self.model.constraints
         nodes, per_element = len(mesh.points), mesh.elements.shape[1]
         carriers = self.model.shell.element.carriers(mesh.elements, nodes)
-        carried = np.column_stack([carriers[field] for field in ("u", "w", "phi", "omega") for _ in range(WIDTHS[field])])
+        carried = np.column_stack(
+            [carriers[field] for field in ("u", "w", "phi", "omega") for _ in range(WIDTHS[field])]
+        )
         free = carried & ~constraints.fixed
         self.carried, self.free = carried, free
         incidence = sp.csr_array(
@@ -236,22 +241,55 @@ class Discretisation:
         )  # fmt: skip
         if element >= 0:
             raise InvertedElement(element, determinant)
+        self._add_loads(load_factor, tangent)
         right_side = np.zeros(self.dofs)
         matrix = None
         if tangent:
             right_side[self._free_index] = -out.condensed[self.free]
             matrix = self._matrix
-        return Assembly(matrix, right_side, out.residual.copy(), self._relative_residual())
+        return Assembly(matrix, right_side, out.residual.copy(), self._relative_residual(load_factor))
 
-    def _relative_residual(self) -> dict[str, float]:
-        """Norms by kind above their round-off, over the elements' forces of that kind.
+    def _add_loads(self, load_factor: float, tangent: bool) -> None:
+        """Take the loads, which are dead, off the residual, and the transport of their couples off the tangent."""
+        out, loads = self._out, load_factor * self._loads
+        out.residual[:] -= loads
+        if tangent:
+            out.condensed[:] -= loads
+            at, values = self._transport
+            out.data[at] += load_factor * values
+
+    def _spin_transport(self) -> tuple[IntArray, FloatArray]:
+        """Places in the tangent of -[c]×/2, and its values, for the dead couples c of the nodes at load factor 1.
+
+        Elements differentiate in the chart exp(ϑ) R̃, in which a couple c on the spins of the new state is
+        c + c × ϑ / 2: so K = K_chart - [c]×/2, with the sum c of the couples of a node's elements. (On those spins a
+        dead couple is constant and adds nothing.) In equilibrium c is the dead couple where no rotation is held. Where
+        exactly one is, the loops over elements have all of c, load and reaction; where more are, [c]× does not meet
+        two free rotations.
+        """
+        numbers = self.equations.number[:, _COLUMNS[3]]
+        couples = self._loads[:, _COLUMNS[3]]
+        nodes = np.flatnonzero(np.any(couples, axis=1) & np.all(numbers >= 0, axis=1))
+        if not nodes.size:
+            return np.empty(0, dtype=np.int64), np.empty(0)
+        rows, columns = (
+            numbers[nodes][:, [*rotation.NEXT, *rotation.LAST]],
+            numbers[nodes][:, [*rotation.LAST, *rotation.NEXT]],
+        )
+        entry = self._matrix.copy()
+        entry.data = np.arange(1.0, entry.nnz + 1.0)
+        at = np.asarray(entry[rows.ravel(), columns.ravel()]).astype(np.int64) - 1
+        return at, np.hstack([0.5 * couples[nodes], -0.5 * couples[nodes]]).ravel()
+
+    def _relative_residual(self, load_factor: float) -> dict[str, float]:
+        """Norms by kind above their round-off, over the elements' forces and the loads of that kind.
 
         α has the unit of w (both work on directors) and is measured against the same forces.
         """
         residual = np.where(self.free, self._out.residual, 0.0)
         norms = [float(np.linalg.norm(residual[:, columns])) for columns in _COLUMNS]
         norms.append(float(np.sqrt(self._out.enhancement_residual[0])))
-        scales = np.sqrt(self._out.scale.sum(axis=1))
+        scales = np.sqrt(self._out.scale.sum(axis=1) + load_factor**2 * self._load_squares)
         above = np.maximum(np.array(norms) - self._noise[[0, 1, 2, 3, 1]], 0.0)
         relative = np.divide(above, scales[[0, 1, 2, 3, 1]], out=above.copy(), where=above > 0.0)
         return dict(zip(KINDS, relative.tolist(), strict=True))
@@ -292,7 +330,9 @@ class Discretisation:
     def recover(self, increment: FloatArray) -> FloatArray:
         """Δα (elements, modes, 3) of the last assembled tangent for a nodal increment in global axes."""
         d_alpha = np.empty((len(self.mesh.elements), self.modes, 3))
-        loops.recover_enhancement(self.body.elements, self.body.layout, increment, self._out.gain, self._out.offset, d_alpha)
+        loops.recover_enhancement(
+            self.body.elements, self.body.layout, increment, self._out.gain, self._out.offset, d_alpha
+        )
         return d_alpha
 
     # -- what pictures and files see -----------------------------------------------------------------------------

@@ -3,11 +3,11 @@ r"""Mechanical loads: dead forces and moments on groups, in proportion to the lo
 A dead load keeps its direction in space. The virtual work of a force density t and of a moment density m, both
 uniform over a group of edges or elements of the undeformed mid-surface,
 
-    ∫ t · δu + m · δω = Σ_I F_I · δu_I + M_I · δω_I,    F_I = t ∫ N_I,    M_I = m ∫ M_I,
+    ∫ t · δu + m · δω = Σ_I F_I · δu_I + C_I · δω_I,    F_I = t ∫ N_I,    C_I = m ∫ M_I,
 
-is that of nodal forces, with the functions N_I of the displacement (quadratic on an edge, 8-node on an element) and
-those of the micro-rotation, M_I: the same where all nodes of an edge or element carry rotation, linear on an edge
-and bilinear on an element where only the corners do. δω is the spin of the micro-rotation.
+is that of nodal forces, with the functions N_I of the displacement and M_I of the micro-rotation. On an element they
+are those of its type; on an edge they are quadratic, those of the micro-rotation linear where only corners carry it.
+δω is the spin of the micro-rotation.
 """
 
 from __future__ import annotations
@@ -19,21 +19,22 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from magshell.arrays import FloatArray, IntArray
+from magshell.arrays import FloatArray
 from magshell.errors import InputError
 from magshell.mesh import Mesh
-from magshell.shell.shape_functions import bilinear, gauss_legendre, serendipity
-from magshell.supports import AnyBool
+from magshell.shell.elements import ElementType
+from magshell.shell.shape_functions import gauss_legendre
 
 # Gauss points along an edge: they measure an edge that bends by a right angle to 1e-6 of its length.
 POINTS = 5
+_COLUMNS = {"u": slice(0, 3), "omega": slice(7, 10)}
 
 
 class Load(Protocol):
-    """Anything with a total over a group, and the columns of the nodal arrays (u 0–2, ω 7–9) that it works on."""
+    """Anything with a total over a group, on one nodal field."""
 
     kind: ClassVar[str]
-    columns: ClassVar[slice]
+    field: ClassVar[str]
 
     @property
     def group(self) -> str:
@@ -58,7 +59,7 @@ class Force:
     """
 
     kind: ClassVar[str] = "force"
-    columns: ClassVar[slice] = slice(0, 3)
+    field: ClassVar[str] = "u"
 
     group: str
     total: ArrayLike
@@ -77,36 +78,28 @@ class Moment:
     """
 
     kind: ClassVar[str] = "moment"
-    columns: ClassVar[slice] = slice(7, 10)
+    field: ClassVar[str] = "omega"
 
     group: str
     total: ArrayLike
 
 
-def nodal_forces(mesh: Mesh, loads: Sequence[Load], rotating: AnyBool) -> FloatArray:
+def nodal_forces(mesh: Mesh, element: ElementType, loads: Sequence[Load]) -> FloatArray:
     """External forces (nodes, 10) of all loads at load factor 1, in global axes: N on u, N m on the spin.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    loads : sequence of Load
-    rotating : ndarray of bool, shape (nodes,)
-        Nodes that carry a micro-rotation.
 
     Raises
     ------
     InputError
-        Unknown group, a total that is not three finite numbers or is zero, a moment where nothing rotates.
+        Unknown group, a total that is not three finite numbers or is zero, a moment where no node carries rotation.
     """
     nodal = np.zeros((len(mesh.points), 10))
     for load in loads:
         where = f"loads: {load.kind} on '{load.group}'"
-        carries = rotating if load.columns == Moment.columns else np.ones_like(rotating)
         try:
-            shares = _shares(mesh, load.group, carries)
+            shares = _shares(mesh, element, load)
         except InputError as error:
             raise InputError(f"{where}: {error}") from None
-        nodal[:, load.columns] += shares[:, None] * _total(where, load.total)
+        nodal[:, _COLUMNS[load.field]] += shares[:, None] * _total(where, load.total)
     return nodal
 
 
@@ -122,44 +115,40 @@ def _total(where: str, value: ArrayLike) -> FloatArray:
     return total
 
 
-def _shares(mesh: Mesh, group: str, carries: AnyBool) -> FloatArray:
-    """Each node's part (nodes,) of a total over a group, on the nodes that carry the field; they sum to one."""
-    members = mesh.nodes_of(group)
+def _shares(mesh: Mesh, element: ElementType, load: Load) -> FloatArray:
+    """Each node's part (nodes,) of the total; they sum to one."""
+    members = mesh.nodes_of(load.group)
+    carriers = 8 if load.field == "u" else element.rest_nodes
     shares = np.zeros(len(mesh.points))
-    if group in mesh.edge_groups:
-        edges = mesh.edge_groups[group]
-        np.add.at(shares, edges, _along_edges(mesh.points[edges], carries[edges[:, 2]]))
-    elif group in mesh.element_groups:
-        elements = mesh.elements[mesh.element_groups[group]]
-        np.add.at(shares, elements, _over_elements(mesh.points[elements], np.all(carries[elements[:, 4:]], axis=1)))
+    if load.group in mesh.edge_groups:
+        edges = mesh.edge_groups[load.group]
+        np.add.at(shares, edges, _along_edges(mesh.points[edges], carriers))
+    elif load.group in mesh.element_groups:
+        elements = mesh.elements[mesh.element_groups[load.group]]
+        np.add.at(shares, elements[:, :carriers], _over_elements(mesh.points[elements], element, carriers))
     else:
-        carrying: IntArray = members[carries[members]]
+        carrying = members[element.carriers(mesh.elements, len(mesh.points))[load.field][members]]
         if not carrying.size:
             raise InputError(f"node {members[0]} is a mid-side node and carries no rotation; it needs corner nodes")
         shares[carrying] = 1.0
-    return np.asarray(shares / shares.sum())
+    return shares / shares.sum()
 
 
-def _along_edges(points: FloatArray, quadratic: AnyBool) -> FloatArray:
+def _along_edges(points: FloatArray, carriers: int) -> FloatArray:
     """Integrals (edges, 3) of the functions of end, end and middle over the length of edges (edges, 3, 3), m."""
     s, weights = np.polynomial.legendre.leggauss(POINTS)
-    linear = np.column_stack([0.5 * (1.0 - s), 0.5 * (1.0 + s), np.zeros(POINTS)])
     middle = 1.0 - s**2
-    full = linear + np.column_stack([-0.5 * middle, -0.5 * middle, middle])
     slope = np.column_stack([s - 0.5, s + 0.5, -2.0 * s])
     length = np.linalg.norm(np.einsum("pn,enx->epx", slope, points), axis=-1) * weights
-    return _integrals(length, linear, full, quadratic)
+    functions = np.column_stack([0.5 * (1.0 - s), 0.5 * (1.0 + s), np.zeros(POINTS)])
+    if carriers == 8:
+        functions += middle[:, None] * [-0.5, -0.5, 1.0]
+    return length @ functions
 
 
-def _over_elements(points: FloatArray, quadratic: AnyBool) -> FloatArray:
-    """Integrals (elements, 8) of the nodes' functions over the area of elements (elements, 8, 3), m²."""
+def _over_elements(points: FloatArray, element: ElementType, carriers: int) -> FloatArray:
+    """Integrals (elements, carriers) of the nodes' functions over the area of elements (elements, 8, 3), m²."""
     parent, weights = gauss_legendre(POINTS)
-    full, slope, _ = serendipity(parent)
-    corners = np.pad(bilinear(parent)[0], ((0, 0), (0, 4)))
-    A = np.einsum("pan,enx->epax", slope, points)
+    A = np.einsum("epan,enx->epax", element.functions(8, parent, points).derivatives, points)
     area = np.linalg.norm(np.cross(A[:, :, 0], A[:, :, 1]), axis=-1) * weights
-    return _integrals(area, corners, full, quadratic)
-
-
-def _integrals(measure: FloatArray, corners: FloatArray, full: FloatArray, quadratic: AnyBool) -> FloatArray:
-    return np.where(quadratic[:, None], measure @ full, measure @ corners)
+    return np.einsum("ep,epn->en", area, element.functions(carriers, parent, points).values)

@@ -20,7 +20,7 @@ from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.magnetics.remanence import Remanence, constant
 from magshell.mesh import Mesh
 from magshell.rigid import check_supported
-from magshell.shell.elements import ELEMENTS, PAPER, ElementType
+from magshell.shell.elements import ELEMENTS, PAPER
 from magshell.shell.normals import nodal_normals
 from magshell.supports import Constraints, Support, resolve
 
@@ -133,8 +133,7 @@ class Model:
         carriers = self.shell.element.carriers(mesh.elements, len(mesh.points))
         put(self, "constraints", resolve(mesh, self.supports, carriers))
         put(self, "loads", tuple(self.loads))
-        rotating = np.isin(np.arange(len(mesh.points)), mesh.corner_nodes)
-        put(self, "nodal_loads", nodal_forces(mesh, self.loads, rotating))
+        put(self, "nodal_loads", nodal_forces(mesh, self.shell.element, self.loads))
         nodes = {}
         for name, position in self.probes.items():
             try:

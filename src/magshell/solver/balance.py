@@ -1,6 +1,6 @@
-"""Global equilibrium of a converged state: reactions of the supports against the field's total torque.
+"""Global equilibrium of a converged state: reactions of the supports against the loads and the field's total torque.
 
-The forces and couples that the supports exert, taken at the deformed nodes, must balance: forces sum to zero (a
+The forces and couples that supports and loads exert, taken at the deformed nodes, must balance: forces sum to zero (a
 uniform field exerts none), moments to minus the magnetic torque, which is integrated here independently of the
 element kernels, from the point values of F and R̃.
 """
@@ -29,13 +29,20 @@ class Balance(NamedTuple):
         About the origin, N m.
     magnetic_torque : ndarray, shape (3,)
         N m.
+    load_force : ndarray, shape (3,)
+        N.
+    load_moment : ndarray, shape (3,)
+        About the origin, N m.
     force_imbalance, moment_imbalance : float
-        |sum| over the sum of magnitudes of the nodal reactions (and of the torque's density).
+        |sum| over the sum of magnitudes of the nodal reactions and loads (and of the torque's density). Couples of the
+        loads count among the forces with the body's size as their arm: pure bending exerts no other.
     """
 
     reaction_force: FloatArray
     reaction_moment: FloatArray
     magnetic_torque: FloatArray
+    load_force: FloatArray
+    load_moment: FloatArray
     force_imbalance: float
     moment_imbalance: float
 
@@ -59,7 +66,7 @@ def magnetic_torque(discretisation: Discretisation, state: State, load_factor: f
 
 
 def balance(discretisation: Discretisation, state: State, load_factor: float, residual: FloatArray) -> Balance:
-    """Reactions and torque of a converged state.
+    """Reactions, loads and torque of a converged state.
 
     Parameters
     ----------
@@ -72,18 +79,31 @@ def balance(discretisation: Discretisation, state: State, load_factor: float, re
     constraints = discretisation.model.constraints
     held = np.where(constraints.fixed & discretisation.carried, residual, 0.0)
     reaction = discretisation.to_global(held)
-    force, couple = reaction[:, :3], reaction[:, 7:]
+    load = load_factor * discretisation.model.nodal_loads
     position = discretisation.mesh.points + state.u
     director = discretisation.normals + state.w
-    moments = np.cross(position, force) + np.cross(director, reaction[:, 3:6]) + couple
+    moments = np.cross(position, reaction[:, :3]) + np.cross(director, reaction[:, 3:6]) + reaction[:, 7:]
+    load_moments = np.cross(position, load[:, :3]) + load[:, 7:]
     torque, torque_scale = magnetic_torque(discretisation, state, load_factor)
-    force_scale = float(np.linalg.norm(force, axis=1).sum())
-    moment_scale = float(np.linalg.norm(moments, axis=1).sum()) + torque_scale
-    total = moments.sum(axis=0)
+    force_sum, load_sum = reaction[:, :3].sum(axis=0), load[:, :3].sum(axis=0)
+    moment_sum, load_moment_sum = moments.sum(axis=0), load_moments.sum(axis=0)
+    force_scale = _sum_of_magnitudes(reaction[:, :3]) + _sum_of_magnitudes(load[:, :3])
+    force_scale += _sum_of_magnitudes(load[:, 7:]) / discretisation.mesh.size
+    moment_scale = _sum_of_magnitudes(moments) + _sum_of_magnitudes(load_moments) + torque_scale
     return Balance(
-        force.sum(axis=0),
-        total,
+        force_sum,
+        moment_sum,
         torque,
-        float(np.linalg.norm(force.sum(axis=0))) / force_scale if force_scale > 0.0 else 0.0,
-        float(np.linalg.norm(total + torque)) / moment_scale if moment_scale > 0.0 else 0.0,
+        load_sum,
+        load_moment_sum,
+        _over(force_sum + load_sum, force_scale),
+        _over(moment_sum + load_moment_sum + torque, moment_scale),
     )
+
+
+def _sum_of_magnitudes(vectors: FloatArray) -> float:
+    return float(np.linalg.norm(vectors, axis=1).sum())
+
+
+def _over(vector: FloatArray, scale: float) -> float:
+    return float(np.linalg.norm(vector)) / scale if scale > 0.0 else 0.0
