@@ -29,6 +29,8 @@ KINDS = {
     fields.PositiveStress: "stress > 0",
     fields.FluxDensity: "flux density",
     fields.PositiveFluxDensity: "flux density > 0",
+    fields.ForceVector: "three forces, not all 0",
+    fields.MomentVector: "three moments, not all 0",
     fields.Number: "number",
     fields.PositiveNumber: "number > 0",
     fields.Count: "whole number ≥ 1",
@@ -63,6 +65,7 @@ MATERIAL = {
 }
 REMANENCE = {"kind": "Which field.", "group": "Element groups it holds for; may be left out of a single entry."}
 SUPPORT = {"kind": "Which support.", "group": "Group of edges, nodes or elements whose nodes are held."}
+LOAD = {"kind": "Which load.", "group": "Group of edges, nodes or elements that it acts on."}
 
 TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
     "rectangle": (
@@ -157,6 +160,8 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "coupling": "The law that couples field and shell, see the [theory page](theory.md#5-magnetic-coupling).",
         },
     ),
+    "force": (schema.ForceTable, {**LOAD, "total": "Its sum over the group at load factor 1."}),
+    "moment": (schema.MomentTable, {**LOAD, "total": "Its sum over the group at load factor 1."}),
     "clamp": (schema.ClampTable, SUPPORT),
     "simple": (schema.SimpleTable, SUPPORT),
     "symmetry": (schema.SymmetryTable, {**SUPPORT, "normal": "Of the mirror plane."}),
@@ -192,6 +197,7 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "material": "The material law and its parameters.",
             "remanence": "The remanent flux density; elements without one have none.",
             "field": "The external field.",
+            "loads": "Mechanical loads.",
             "supports": "What holds the shell.",
             "probes": "Nodes to follow: a name and the reference position.",
             "solver": "How the path is followed.",
@@ -206,6 +212,7 @@ TOP = {
     "field": "table",
     "solver": "table",
     "remanence": "list of tables",
+    "loads": "list of tables",
     "supports": "list of tables, at least one",
     "probes": "table of positions",
 }
@@ -217,6 +224,7 @@ OTHERWISE = {
     ("blocks", "elements"): "each block its own",
     ("block", "elements"): "those of `mesh`",
     ("constant", "vector"): "magnitude and direction",
+    ("file", "field"): "none",
     ("file", "solver"): "see below",
 }
 EXAMPLES = {
@@ -225,7 +233,15 @@ EXAMPLES = {
     "example-cylinder": "pump",
     "example-sphere-patch": "gripper",
 }
-DIMENSIONS = (units.LENGTH, units.STRESS, units.FLUX_DENSITY, units.ANGLE, units.INVERSE_LENGTH)
+DIMENSIONS = (
+    units.LENGTH,
+    units.STRESS,
+    units.FLUX_DENSITY,
+    units.ANGLE,
+    units.INVERSE_LENGTH,
+    units.FORCE,
+    units.MOMENT,
+)
 
 
 def main() -> int:

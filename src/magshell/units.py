@@ -1,6 +1,6 @@
 """Quantities with units, as people write them: "0.9 mm" in, SI out, and back.
 
-This is the only place that knows a unit; everywhere else a number is in metre, pascal, tesla and radian.
+This is the only place that knows a unit; everywhere else a number is in metre, pascal, tesla, newton and radian.
 """
 
 from __future__ import annotations
@@ -66,6 +66,16 @@ FLUX_DENSITY = _dimension(
 )
 ANGLE = _dimension("angle", {"rad": "1", "deg": _DEGREE}, {"deg": 0.0})
 INVERSE_LENGTH = _dimension("inverse length", {"1/m": "1", "1/mm": "1e3"}, {"1/mm": 1e3, "1/m": 0.0})
+FORCE = _dimension(
+    "force",
+    {"N": "1", "kN": "1e3", "mN": "1e-3", "uN": "1e-6", "µN": "1e-6"},
+    {"N": 1.0, "mN": 1e-4, "uN": 0.0},
+)
+MOMENT = _dimension(
+    "moment",
+    {"N m": "1", "N mm": "1e-3", "mN m": "1e-3", "mN mm": "1e-6", "uN m": "1e-6", "µN m": "1e-6"},
+    {"N m": 1.0, "N mm": 1e-6, "uN m": 0.0},
+)
 NUMBER = Dimension("number without unit", {}, ())
 
 
@@ -149,14 +159,14 @@ def _split(value: object, dimension: Dimension) -> tuple[Decimal, str]:
     match = _NUMBER.fullmatch(value)
     if match is None:
         raise InputError(f"{quoted(value)} does not begin with a number; {_example(dimension)}")
-    number, unit = match.group(1), match.group(2).strip()
+    number, unit = match.group(1), " ".join(match.group(2).split())
     if float(number) == 0.0:
         number = "0"
     return Decimal(number), "1" + unit if unit.startswith("/") else unit
 
 
 def _wrong_unit(found: str, dimension: Dimension) -> str:
-    for other in (LENGTH, STRESS, FLUX_DENSITY, ANGLE, INVERSE_LENGTH):
+    for other in (LENGTH, STRESS, FLUX_DENSITY, ANGLE, INVERSE_LENGTH, FORCE, MOMENT):
         if found in other.units:
             return f"is a {other.name} where a {dimension.name} is expected (units: {dimension.allowed})"
     names = list(dimension.units)

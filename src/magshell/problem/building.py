@@ -11,6 +11,7 @@ import numpy as np
 from magshell import magnetics, materials
 from magshell.errors import InputError
 from magshell.linalg import make_solver
+from magshell.loads import Force, Load, Moment
 from magshell.magnetics import UniformField, remanence
 from magshell.magnetics.remanence import Remanence
 from magshell.materials import Material
@@ -75,9 +76,12 @@ def build(file: ProblemFile, source: str) -> Problem:
             thickness=file.shell.thickness,
             material=_material(file.material, file.shell.thickness),
             remanence=_remanence(file.remanence, mesh),
+            element=file.shell.element,
+            thickness_stretch=file.shell.thickness_stretch,
         )
         field = UniformField(file.field.flux_density, file.field.stops)
         supports = _supports(file.supports, mesh)
+        loads = _loads(file.loads, mesh)
         _probes_exist(file.probes, mesh)
         model = Model(
             shell,
@@ -85,6 +89,7 @@ def build(file: ProblemFile, source: str) -> Problem:
             field=field,
             coupling=COUPLINGS[file.field.coupling],
             probes=file.probes,
+            loads=loads,
         )
         settings = Settings(**file.solver.model_dump(exclude_none=True))
         make_solver(settings.linear_solver)
@@ -206,6 +211,23 @@ def _support(table: schema.Support) -> Support:
             return SymmetryPlane(table.group, table.normal)
         case schema.PrescribeTable():
             return Prescribe(table.group, table.field, table.component, table.value)
+
+
+def _loads(tables: tuple[schema.Load, ...], mesh: Mesh) -> list[Load]:
+    loads: list[Load] = []
+    for number, table in enumerate(tables):
+        with _at(f"loads[{number}].group"):
+            mesh.nodes_of(table.group)
+        loads.append(_load(table))
+    return loads
+
+
+def _load(table: schema.Load) -> Load:
+    match table:
+        case schema.ForceTable():
+            return Force(table.group, table.total)
+        case schema.MomentTable():
+            return Moment(table.group, table.total)
 
 
 def _probes_exist(probes: Mapping[str, tuple[float, float, float]], mesh: Mesh) -> None:

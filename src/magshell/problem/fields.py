@@ -104,6 +104,8 @@ NonNegativeStress = Annotated[float, _quantity(units.STRESS), AfterValidator(_no
 PositiveStress = Annotated[float, _positive_quantity(units.STRESS)]
 FluxDensity = Annotated[float, _quantity(units.FLUX_DENSITY)]
 PositiveFluxDensity = Annotated[float, _positive_quantity(units.FLUX_DENSITY)]
+Force = Annotated[float, _quantity(units.FORCE)]
+Moment = Annotated[float, _quantity(units.MOMENT)]
 Degrees = Annotated[float, _quantity(units.ANGLE, unit="deg")]
 Number = Annotated[float, _quantity(units.NUMBER)]
 PositiveNumber = Annotated[float, _positive_quantity(units.NUMBER)]
@@ -122,6 +124,12 @@ FluxVector = Annotated[
 ]
 Direction = Annotated[
     tuple[Number, Number, Number], _list_of(3, "components along X1, X2, X3"), AfterValidator(_nonzero)
+]
+ForceVector = Annotated[
+    tuple[Force, Force, Force], _list_of(3, "components of the force along X1, X2, X3"), AfterValidator(_nonzero)
+]
+MomentVector = Annotated[
+    tuple[Moment, Moment, Moment], _list_of(3, "components of the moment about X1, X2, X3"), AfterValidator(_nonzero)
 ]
 Corner = Annotated[tuple[Length, ...], _list_of((2, 3), "coordinates X1, X2 and, out of the plane, X3")]
 Corners = Annotated[tuple[Corner, Corner, Corner, Corner], _list_of(4, "corners, one after the other")]

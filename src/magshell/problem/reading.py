@@ -176,6 +176,7 @@ def _kinds(table: str) -> list[str]:
         "material": schema.Material,
         "remanence": schema.Remanence,
         "supports": schema.Support,
+        "loads": schema.Load,
     }
     choice, _ = schema.ProblemFile.chosen_by[table]
     return [get_args(kind.model_fields[choice].annotation)[0] for kind in get_args(kinds[table])]

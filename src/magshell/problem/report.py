@@ -14,7 +14,7 @@ from magshell.mesh.quality import worst
 from magshell.problem import schema
 from magshell.problem.building import Problem
 from magshell.problem.fields import DIMENSION_OF_FIELD
-from magshell.units import FLUX_DENSITY, LENGTH, STRESS, Dimension, show
+from magshell.units import FLUX_DENSITY, FORCE, LENGTH, MOMENT, STRESS, Dimension, show
 
 VACUUM_PERMEABILITY = 4e-7 * math.pi
 NODE_UNKNOWNS, CORNER_UNKNOWNS = 3, 7  # u everywhere; w, phi and the spin at corners
@@ -49,6 +49,8 @@ class _Figures:
     field: float
     remanence: FloatArray
     couple: float
+    force: float
+    moment: float
 
     @property
     def strongest(self) -> float:
@@ -69,6 +71,12 @@ class _Figures:
         stress = self.field * self.strongest / VACUUM_PERMEABILITY
         return 12.0 * stress / self.youngs_modulus * self.slenderness**2
 
+    @property
+    def mechanical_load(self) -> float:
+        """12 (F + M / L) L / (E h³), of the loads' sums of magnitudes: a square plate bends visibly from about 0.1."""
+        force = self.force + self.moment / self.extent
+        return 12.0 * force * self.extent / (self.youngs_modulus * self.thickness**3)
+
 
 def describe(problem: Problem) -> Report:
     """Describe a problem that has passed all checks."""
@@ -81,6 +89,7 @@ def describe(problem: Problem) -> Report:
             "Material": list(_material(problem, figures)),
             "Remanence": list(_remanence(problem, figures)),
             "Field": list(_field(problem, figures)),
+            **({"Loads": list(_loads(problem, figures))} if problem.file.loads else {}),
             "Supports": list(_supports(problem)),
             "Probes": list(_probes(problem, figures.extent)),
         },
@@ -103,6 +112,8 @@ def _figures(problem: Problem) -> _Figures:
         field=float(np.linalg.norm(flux)),
         remanence=np.linalg.norm(vectors, axis=1),
         couple=float(np.linalg.norm(np.cross(vectors, flux), axis=1).max()),
+        force=sum(math.hypot(*load.total) for load in problem.file.loads if load.kind == "force"),
+        moment=sum(math.hypot(*load.total) for load in problem.file.loads if load.kind == "moment"),
     )
 
 
@@ -212,6 +223,9 @@ def _span(magnitude: FloatArray, elements: IntArray) -> str:
 
 def _field(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
     table = problem.file.field
+    if figures.field == 0.0:
+        yield "flux density B", "none"
+        return
     yield "flux density B", _components(table.flux_density, FLUX_DENSITY)
     yield "|B|", show(figures.field, FLUX_DENSITY)
     yield "coupling law", table.coupling
@@ -221,10 +235,21 @@ def _field(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
     yield "12 |B| |Brem| / (mu0 E) (L/h)²", f"{figures.bending_load:.4g}"
 
 
+def _loads(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
+    for table in problem.file.loads:
+        total = _components(table.total, FORCE if table.kind == "force" else MOMENT)
+        yield table.group, f"{table.kind} {total}, {_counted(problem, table.group)}"
+    yield "12 (F L + M) / (E h³)", f"{figures.mechanical_load:.4g}"
+
+
+def _counted(problem: Problem, group: str) -> str:
+    nodes = len(problem.model.shell.mesh.nodes_of(group))
+    return f"{nodes} node{'s' if nodes > 1 else ''}"
+
+
 def _supports(problem: Problem) -> Iterator[tuple[str, str]]:
     for table in problem.file.supports:
-        nodes = len(problem.model.shell.mesh.nodes_of(table.group))
-        counted = f"{nodes} node{'s' if nodes > 1 else ''}"
+        counted = _counted(problem, table.group)
         match table:
             case schema.SymmetryTable():
                 yield (
@@ -284,6 +309,8 @@ def _doubts(problem: Problem, figures: _Figures) -> Iterator[str]:
         yield f"the bending load is {figures.bending_load:.2g}: the shell will hardly move; check the units"
     elif figures.bending_load > 1e5:
         yield f"the bending load is {figures.bending_load:.2g}: far beyond any experiment; check the units"
+    if figures.mechanical_load > 1e5:
+        yield f"12 (F L + M) / (E h³) is {figures.mechanical_load:.2g}: loads beyond any experiment; check the units"
     worst_corner = worst(problem.model.shell.mesh)["scaled_jacobian"]
     if worst_corner.value < 0.2:
         yield f"element {worst_corner.element} is badly shaped (scaled Jacobian {worst_corner.value:.2g})"

@@ -256,6 +256,24 @@ class PrescribeTable(_Support):
         return self
 
 
+class _Load(Table):
+    group: f.Name
+
+
+class ForceTable(_Load):
+    """A dead force that reaches `total` at load factor 1."""
+
+    kind: Literal["force"]
+    total: f.ForceVector
+
+
+class MomentTable(_Load):
+    """A dead moment on the micro-rotation that reaches `total` at load factor 1."""
+
+    kind: Literal["moment"]
+    total: f.MomentVector
+
+
 class SolverTable(Table):
     """How the path is followed; what is left out has the default of `magshell.Settings`."""
 
@@ -272,6 +290,7 @@ Mesh: TypeAlias = Rectangle | Blocks | Cylinder | SpherePatch
 Material: TypeAlias = NeoHookean | MooneyRivlin
 Remanence: TypeAlias = ConstantRemanence | MeridionalRemanence | CircumferentialRemanence
 Support: TypeAlias = ClampTable | SimpleTable | SymmetryTable | PrescribeTable
+Load: TypeAlias = ForceTable | MomentTable
 
 
 class ProblemFile(Table):
@@ -283,6 +302,7 @@ class ProblemFile(Table):
         "material": ("law", 1),
         "remanence": ("kind", 2),
         "supports": ("kind", 2),
+        "loads": ("kind", 2),
     }
 
     title: str = ""
@@ -291,7 +311,8 @@ class ProblemFile(Table):
     shell: ShellTable
     material: Annotated[Material, Field(discriminator="law")]
     remanence: tuple[Annotated[Remanence, Field(discriminator="kind")], ...] = ()
-    field: FieldTable
+    field: FieldTable = FieldTable(flux_density=(0.0, 0.0, 0.0))
+    loads: tuple[Annotated[Load, Field(discriminator="kind")], ...] = ()
     supports: Annotated[tuple[Annotated[Support, Field(discriminator="kind")], ...], BeforeValidator(f.not_empty)]
     probes: dict[f.ProbeName, f.Position] = {}
     solver: SolverTable = SolverTable()
