@@ -14,7 +14,9 @@ import time
 from pathlib import Path
 
 import numpy as np
+import problem_files
 import pytest
+from problem_files import changed
 from rich.console import Console
 
 from magshell import problem
@@ -23,36 +25,8 @@ from magshell.output.history import HistoryWriter
 from magshell.progress import ProgressDisplay
 from magshell.solver import Step, solve
 
-STRIP = """
-[mesh]
-generator = "rectangle"
-length = "20 mm"
-width = "5 mm"
-elements = [4, 1]
-
-[shell]
-thickness = "1 mm"
-
-[material]
-law = "micropolar-neo-hookean"
-shear_modulus = "303 kPa"
-lame_lambda = "7300 kPa"
-
-[[remanence]]
-kind = "constant"
-vector = ["143 mT", 0, 0]
-
-[field]
-flux_density = [0, 0, "5 mT"]
-stops = ["1 mT", "3 mT"]
-
-[[supports]]
-kind = "clamp"
-group = "left"
-
-[probes]
-tip = ["20 mm", "2.5 mm", 0]
-"""
+FIELD = 'flux_density = [0, 0, "2 mT"]\nstops = ["1 mT", "2 mT"]'
+STRIP = changed(problem_files.STRIP, (FIELD, 'flux_density = [0, 0, "5 mT"]\nstops = ["1 mT", "3 mT"]'))
 
 
 @pytest.fixture
@@ -104,7 +78,7 @@ def test_a_second_run_replaces_the_first(strip: str, tmp_path: Path) -> None:
     out = tmp_path / "out"
     assert main(["run", strip, "--out", str(out)]) == 0
     first = len(rows(out))
-    again = STRIP.replace('"5 mT"', '"4 mT"').replace('["1 mT", "3 mT"]', "[]")
+    again = changed(STRIP, ('"5 mT"', '"4 mT"'), ('["1 mT", "3 mT"]', "[]"))
     Path(strip).write_text(again + "[solver]\nfirst_step = 0.5\n")
     assert main(["run", strip, "--out", str(out)]) == 0
     history = rows(out)

@@ -12,72 +12,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+from problem_files import BLOCKS, LOADED, PUMP, STRIP, changed
 
 from magshell.cli import main
-
-STRIP = """
-[mesh]
-generator = "rectangle"
-length = "20 mm"
-width = "5 mm"
-elements = [4, 1]
-
-[mesh.edge_groups]
-far = { x1 = "20 mm" }
-
-[shell]
-thickness = "1 mm"
-
-[material]
-law = "micropolar-neo-hookean"
-shear_modulus = "303 kPa"
-lame_lambda = "7300 kPa"
-
-[[remanence]]
-kind = "constant"
-vector = ["143 mT", 0, 0]
-
-[field]
-flux_density = [0, 0, "2 mT"]
-stops = ["1 mT", "2 mT"]
-
-[[supports]]
-kind = "clamp"
-group = "left"
-
-[probes]
-tip = ["20 mm", 0, 0]
-"""
-
-BLOCKS = STRIP.replace(
-    STRIP[STRIP.index("[mesh]") : STRIP.index("[shell]")],
-    """[mesh]
-generator = "blocks"
-elements = [2, 1]
-
-[mesh.blocks.one]
-corners = [[0, 0], ["10 mm", 0], ["10 mm", "5 mm"], [0, "5 mm"]]
-
-[mesh.blocks.two]
-corners = [["10 mm", 0], ["20 mm", 0], ["20 mm", "5 mm"], ["10 mm", "5 mm"]]
-
-[mesh.edge_groups]
-left = { x1 = 0 }
-
-""",
-)
-
-PUMP = STRIP.replace(
-    STRIP[STRIP.index("[mesh]") : STRIP.index("[shell]")],
-    """[mesh]
-generator = "cylinder"
-radius = "20 mm"
-length = "10 mm"
-elements = [6, 1]
-angle = ["0 deg", "90 deg"]
-
-""",
-).replace('"left"', '"start"')
 
 CLAMP = '[[supports]]\nkind = "clamp"\ngroup = "left"\n'
 REMANENCE = '[[remanence]]\nkind = "constant"\nvector = ["143 mT", 0, 0]\n'
@@ -154,6 +91,20 @@ BROKEN = [
     Broken("empty list of groups", REMANENCE, REMANENCE + "group = []\n", "remanence[0].group", ("empty list",)),
     Broken("two remanences, one without group", REMANENCE, REMANENCE + 'group = "one"\n' + REMANENCE, "remanence[1].group", ("missing", "one, two"), BLOCKS),
     Broken("two remanences in one element", REMANENCE, (REMANENCE + 'group = "one"\n') * 2, "remanence[1].group", ("already", "'one'"), BLOCKS),
+    Broken("unknown load", '"force"', '"forse"', "loads[0].kind", ("'forse'", "'force'"), LOADED),
+    Broken("no kind of load", 'kind = "force"', "", "loads[0].kind", ("missing", "moment"), LOADED),
+    Broken("load on no group", '"far"\ntotal', '"fra"\ntotal', "loads[0].group", ("'fra'", "'far'"), LOADED),
+    Broken("load without total", 'total = [0, 0, "2 mN"]', "", "loads[0].total", ("missing",), LOADED),
+    Broken("load of zero", '"2 mN"', "0", "loads[0].total", ("zero",), LOADED),
+    Broken("load of two components", '[0, 0, "2 mN"]', '[0, "2 mN"]', "loads[0].total", ("2 entries", "expected 3"), LOADED),
+    Broken("load not finite", '"2 mN"', '"inf mN"', "loads[0].total[2]", ("not a finite number",), LOADED),
+    Broken("load without unit", '"2 mN"', "2", "loads[0].total[2]", ("no unit", "N"), LOADED),
+    Broken("force in N m", '"2 mN"', '"2 N m"', "loads[0].total[2]", ("moment", "force"), LOADED),
+    Broken("moment in N", '"0.01 N mm"', '"0.01 N"', "loads[1].total[1]", ("force", "moment"), LOADED),
+    Broken("moment in Nm", '"0.01 N mm"', '"0.01 Nm"', "loads[1].total[1]", ("'Nm'", "'N m'"), LOADED),
+    Broken("misspelt key of a load", "total = [0, 0,", "value = [0, 0,", "loads[0].value", ("unknown key", "total"), LOADED),
+    Broken("table for a list of loads", "[[loads]]\nkind = \"force\"", "[loads]\nkind = \"force\"", "", ("TOML", "twice"), LOADED),
+    Broken("neither field nor load", STRIP[STRIP.index("[field]") : STRIP.index("[[supports]]")], "", "field", ("zero", "nor is there a load", "nothing loads")),
     # supports and probes
     Broken("missing group", '"left"', '"lefft"', "supports[0].group", ("'lefft'", "'left'")),
     Broken("empty group name", '"left"', '""', "supports[0].group", ("name",)),
@@ -202,8 +153,7 @@ BROKEN = [
 def test_says_what_is_wrong_and_where(
     case: Broken, command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert case.base.count(case.old) == 1, "the entry must change one thing"
-    (tmp_path / "broken.toml").write_text(case.base.replace(case.old, case.new))
+    (tmp_path / "broken.toml").write_text(changed(case.base, (case.old, case.new)))
     out = ["--out", str(tmp_path / "out")] if command == "run" else []
     status = main([command, str(tmp_path / "broken.toml"), *out])
     shown = capsys.readouterr()
@@ -271,7 +221,7 @@ def test_byte_order_mark_and_windows_line_ends_are_read(tmp_path: Path) -> None:
 
 def test_every_error_has_its_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "broken.toml"
-    file.write_text(STRIP.replace('"5 mm"', '"5 kPa"').replace("[4, 1]", "[0, 1]").replace('"clamp"', '"clip"'))
+    file.write_text(changed(STRIP, ('"5 mm"', '"5 kPa"'), ("[4, 1]", "[0, 1]"), ('"clamp"', '"clip"')))
     assert main(["check", str(file)]) == 2
     keys = [line.split(": ")[2] for line in capsys.readouterr().err.splitlines()]
     assert keys == ["mesh.width", "mesh.elements[0]", "supports[0].kind"]

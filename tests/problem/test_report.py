@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from test_broken_problems import BLOCKS, PUMP, STRIP
+from problem_files import BLOCKS, LOADED, PUMP, STRIP, changed
 
 from magshell import problem
 from magshell.problem.building import build
@@ -53,7 +53,7 @@ def test_radius_of_curvature(name: str, radius: float) -> None:
 
 def test_remanence_by_group() -> None:
     old = '[[remanence]]\nkind = "constant"\nvector = ["143 mT", 0, 0]\n'
-    report = report_of(BLOCKS.replace(old, old + 'group = "two"\n'))
+    report = report_of(changed(BLOCKS, (old, old + 'group = "two"\n')))
     assert entry(report, "Remanence", "two") == "143 mT, constant, along (1, 0, 0)"
     assert entry(report, "Remanence", "none in") == "2 of 4 elements"
 
@@ -70,6 +70,20 @@ def test_prescribed_values_have_their_unit() -> None:
         assert entry(report, "Supports", "far") == shown
 
 
+def test_loads() -> None:
+    report = report_of(LOADED)
+    force, moment, length, thickness = 2e-3, 1e-5, 20e-3, 1e-3
+    young = 303e3 * (3 * 7300e3 + 2 * 303e3) / (7300e3 + 303e3)
+    assert report.sections["Loads"][:2] == [
+        ("far", "force (0, 0, 2 mN), 3 nodes"),
+        ("right", "moment (0, 0.01 N mm, 0), 3 nodes"),
+    ]
+    expected = 12 * (force * length + moment) / (young * thickness**3)
+    assert number(entry(report, "Loads", "12 (F L + M) / (E h³)")) == pytest.approx(expected, rel=1e-3)
+    assert report.sections["Field"] == [("flux density B", "none")]
+    assert "Loads" not in report_of(STRIP).sections
+
+
 DOUBTS = [
     (STRIP, '"1 mm"\n\n[mat', '"5 mm"\n\n[mat', "too thick for a shell"),
     (STRIP, '"1 mm"\n\n[mat', '"1 um"\n\n[mat', "thinner than any film"),
@@ -81,17 +95,18 @@ DOUBTS = [
     (STRIP, '["143 mT", 0, 0]', '[0, 0, "143 mT"]', "parallel to the remanence"),
     (STRIP, '"143 mT"', '"14 uT"', "hardly move"),
     (STRIP, 'tip = ["20 mm", 0, 0]', "", "no probes"),
+    (LOADED, '"2 mN"', '"2 kN"', "loads beyond any experiment"),
+    (LOADED, '"0.01 N mm"', '"10 N m"', "12 (F L + M) / (E h³)"),
     (BLOCKS, '["20 mm", "5 mm"]', '["60 mm", "5 mm"]', "badly shaped"),
 ]
 
 
 def test_nothing_to_doubt() -> None:
-    for text in (STRIP, BLOCKS, PUMP):
+    for text in (STRIP, BLOCKS, PUMP, LOADED):
         assert report_of(text).warnings == []
 
 
 @pytest.mark.parametrize(("base", "old", "new", "words"), DOUBTS, ids=[words for *_, words in DOUBTS])
 def test_doubts(base: str, old: str, new: str, words: str) -> None:
-    assert base.count(old) == 1
-    warnings = report_of(base.replace(old, new)).warnings
+    warnings = report_of(changed(base, (old, new))).warnings
     assert any(words in warning for warning in warnings), warnings

@@ -1,0 +1,103 @@
+"""Problem files that work, with a field or with loads, and a way to change one thing in them."""
+
+from __future__ import annotations
+
+
+def changed(text: str, *changes: tuple[str, str]) -> str:
+    """A problem file with pieces (old, new) exchanged, each of which stands in it exactly once."""
+    for old, new in changes:
+        assert text.count(old) == 1, f"{old!r} stands {text.count(old)} times in the file; a change needs one place"
+        text = text.replace(old, new)
+    return text
+
+
+def with_mesh(text: str, mesh: str) -> str:
+    """A problem file with another table `mesh`."""
+    return changed(text, (text[text.index("[mesh]") : text.index("[shell]")], mesh))
+
+
+STRIP = """
+[mesh]
+generator = "rectangle"
+length = "20 mm"
+width = "5 mm"
+elements = [4, 1]
+
+[mesh.edge_groups]
+far = { x1 = "20 mm" }
+
+[shell]
+thickness = "1 mm"
+
+[material]
+law = "micropolar-neo-hookean"
+shear_modulus = "303 kPa"
+lame_lambda = "7300 kPa"
+
+[[remanence]]
+kind = "constant"
+vector = ["143 mT", 0, 0]
+
+[field]
+flux_density = [0, 0, "2 mT"]
+stops = ["1 mT", "2 mT"]
+
+[[supports]]
+kind = "clamp"
+group = "left"
+
+[probes]
+tip = ["20 mm", 0, 0]
+"""
+
+BLOCKS = with_mesh(
+    STRIP,
+    """[mesh]
+generator = "blocks"
+elements = [2, 1]
+
+[mesh.blocks.one]
+corners = [[0, 0], ["10 mm", 0], ["10 mm", "5 mm"], [0, "5 mm"]]
+
+[mesh.blocks.two]
+corners = [["10 mm", 0], ["20 mm", 0], ["20 mm", "5 mm"], ["10 mm", "5 mm"]]
+
+[mesh.edge_groups]
+left = { x1 = 0 }
+
+""",
+)
+
+PUMP = changed(
+    with_mesh(
+        STRIP,
+        """[mesh]
+generator = "cylinder"
+radius = "20 mm"
+length = "10 mm"
+elements = [6, 1]
+angle = ["0 deg", "90 deg"]
+
+""",
+    ),
+    ('"left"', '"start"'),
+)
+
+_MAGNETIC = STRIP[STRIP.index("[[remanence]]") : STRIP.index("[[supports]]")]
+LOADED = changed(
+    STRIP,
+    (
+        _MAGNETIC,
+        """[[loads]]
+kind = "force"
+group = "far"
+total = [0, 0, "2 mN"]
+
+[[loads]]
+kind = "moment"
+group = "right"
+total = [0, "0.01 N mm", 0]
+
+""",
+    ),
+)
