@@ -127,8 +127,7 @@ class Unsupported:
 
     @cached_property
     def constraints(self):
-        mesh = self.shell.mesh
-        return resolve(mesh, self.supports, self.shell.element.carriers(mesh.elements, len(mesh.points)))
+        return resolve(self.shell.mesh, self.supports, self.shell.carriers)
 
     @cached_property
     def nodal_loads(self):

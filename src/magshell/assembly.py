@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse as sp
 
-from magshell.arrays import FloatArray, IntArray
+from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.materials.law import strain_energy
 from magshell.model import Model
@@ -104,7 +104,10 @@ class Discretisation:
             raise InputError(f"remanence: it is not finite in element {bad}")
         self.modes = len(element.modes)
         layout = Layout(8, element.rest_nodes, element.stretch_nodes, element.rest_nodes, self.modes)
-        self.body = loops.Body(np.ascontiguousarray(mesh.elements), layout, geometry, shape, remanence)
+        self.body = loops.Body(
+            np.ascontiguousarray(mesh.elements), layout, geometry, shape, remanence,
+            model.shell.thickness_stretch == "plane-stress",
+        )  # fmt: skip
         self._number_equations(ordering)
         material = model.shell.material
         stiffest = 2.0 * material.shear_modulus + material.lame_lambda
@@ -130,10 +133,8 @@ class Discretisation:
     def _number_equations(self, ordering: Ordering) -> None:
         mesh, constraints = self.mesh, self.model.constraints
         nodes, per_element = len(mesh.points), mesh.elements.shape[1]
-        carriers = self.model.shell.element.carriers(mesh.elements, nodes)
-        carried = np.column_stack(
-            [carriers[field] for field in ("u", "w", "phi", "omega") for _ in range(WIDTHS[field])]
-        )
+        element, shell = self.model.shell.element, self.model.shell
+        in_element, carried = _columns(element.carriers(mesh.elements, nodes)), _columns(shell.carriers)
         free = carried & ~constraints.fixed
         self.carried, self.free = carried, free
         incidence = sp.csr_array(
@@ -168,7 +169,7 @@ class Discretisation:
             local_component.astype(np.int64),
             number,
             rank,
-            (free == carried).all(axis=1),
+            (free == in_element).all(axis=1),
             self.pattern.indptr,
             offset,
             np.ascontiguousarray(constraints.frame_of),
@@ -229,7 +230,7 @@ class Discretisation:
         """
         model, out = self.model, self._out
         elements, points, levels = self.body.geometry.volume.shape
-        mixed = stresses is not None
+        mixed = stresses is not None and not self.body.plane_stress
         if stresses is None:
             stresses = loops.Stresses(np.zeros((elements, points, levels, 3, 3)), np.zeros((elements, points, 2, 3)))
         if imposed is None:
@@ -290,7 +291,7 @@ class Discretisation:
         norms = [float(np.linalg.norm(residual[:, columns])) for columns in _COLUMNS]
         norms.append(float(np.sqrt(self._out.enhancement_residual[0])))
         scales = np.sqrt(self._out.scale.sum(axis=1) + load_factor**2 * self._load_squares)
-        above = np.maximum(np.array(norms) - self._noise[[0, 1, 2, 3, 1]], 0.0)
+        above = np.maximum(np.array(norms) - self._noise, 0.0)
         relative = np.divide(above, scales[[0, 1, 2, 3, 1]], out=above.copy(), where=above > 0.0)
         return dict(zip(KINDS, relative.tolist(), strict=True))
 
@@ -400,6 +401,11 @@ class Discretisation:
         values = nodal.copy()
         values[self._mid_sides] = nodal[self._mid_side_ends].mean(axis=1)
         return values
+
+
+def _columns(carriers: dict[str, AnyArray]) -> AnyArray:
+    """Which nodes have which columns of the nodal arrays: boolean (nodes, 10)."""
+    return np.column_stack([carriers[field] for field, width in WIDTHS.items() for _ in range(width)])
 
 
 def _pattern(graph: sp.csr_array, order: IntArray, counts: IntArray) -> tuple[Pattern, sp.csr_array]:

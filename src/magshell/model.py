@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from magshell.arrays import FloatArray
+from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError, suggest
 from magshell.loads import Load, nodal_forces
 from magshell.magnetics.deformation_gradient_energy import DeformationGradientEnergy
@@ -20,10 +20,11 @@ from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.magnetics.remanence import Remanence, constant
 from magshell.mesh import Mesh
 from magshell.rigid import check_supported
-from magshell.shell.elements import ELEMENTS, PAPER
+from magshell.shell.elements import ELEMENTS, QUADRATIC
 from magshell.shell.normals import nodal_normals
 from magshell.supports import Constraints, Support, resolve
 
+STRETCHES = ("linear", "none", "plane-stress")
 NO_FIELD = UniformField((0.0, 0.0, 0.0))
 NO_REMANENCE = constant((0.0, 0.0, 0.0))
 
@@ -42,9 +43,11 @@ class Shell:
         A law with its parameters, for instance `MicropolarNeoHookean`.
     remanence : Remanence, optional
         Remanent flux density of the undeformed material, see `magshell.remanence`; by default none.
-
     element : ElementType or str, optional
         Element type or its name, see `magshell.shell.elements`.
+    thickness_stretch : {"linear", "none", "plane-stress"}, optional
+        Stretch of the thickness that varies linearly across it: an unknown φ, absent (this locks in bending), or
+        eliminated at each point so that P33 has no moment.
 
     Raises
     ------
@@ -56,7 +59,8 @@ class Shell:
     thickness: float
     material: Any
     remanence: Remanence = NO_REMANENCE
-    element: Any = PAPER
+    element: Any = QUADRATIC
+    thickness_stretch: str = "linear"
 
     def __post_init__(self) -> None:
         thickness = _positive("shell: thickness", self.thickness, "m")
@@ -81,6 +85,19 @@ class Shell:
             if self.element not in ELEMENTS:
                 raise InputError(f"shell: element is '{self.element}'. {suggest(self.element, ELEMENTS)}")
             object.__setattr__(self, "element", ELEMENTS[self.element])
+        if self.thickness_stretch not in STRETCHES:
+            raise InputError(
+                f"shell: thickness_stretch is '{self.thickness_stretch}'. {suggest(self.thickness_stretch, STRETCHES)}"
+            )
+
+    @property
+    def carriers(self) -> dict[str, AnyArray]:
+        """Which nodes carry the fields u, w, phi and omega: boolean arrays (nodes,)."""
+        count = len(self.mesh.points)
+        carriers: dict[str, AnyArray] = self.element.carriers(self.mesh.elements, count)
+        if self.thickness_stretch != "linear":
+            carriers["phi"] = np.zeros(count, dtype=bool)
+        return carriers
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -130,8 +147,7 @@ class Model:
         put = object.__setattr__
         put(self, "coupling", MicropolarCouple() if self.coupling is None else self.coupling)
         put(self, "supports", tuple(self.supports))
-        carriers = self.shell.element.carriers(mesh.elements, len(mesh.points))
-        put(self, "constraints", resolve(mesh, self.supports, carriers))
+        put(self, "constraints", resolve(mesh, self.supports, self.shell.carriers))
         put(self, "loads", tuple(self.loads))
         put(self, "nodal_loads", nodal_forces(mesh, self.shell.element, self.loads))
         nodes = {}

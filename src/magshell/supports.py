@@ -200,10 +200,10 @@ def resolve(mesh: Mesh, supports: Supports, carriers: Mapping[str, AnyBool]) -> 
             if condition.field != "u":
                 carries = carriers[condition.field][members]
                 if not carries.any() and not condition.optional:
-                    raise InputError(
-                        f"support on '{condition.group}': node {members[0]} is a mid-side node and does not carry "
-                        f"'{condition.field}', which needs corner nodes"
+                    absent = "no node of this shell carries" if not carriers[condition.field].any() else (
+                        f"node {members[0]} is a mid-side node and does not carry"
                     )
+                    raise InputError(f"support on '{condition.group}': {absent} '{condition.field}'")
                 members = members[carries]
             for node in members:
                 directions.setdefault((int(node), condition.field), []).append(

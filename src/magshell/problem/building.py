@@ -76,6 +76,8 @@ def build(file: ProblemFile, source: str) -> Problem:
             thickness=file.shell.thickness,
             material=_material(file.material, file.shell.thickness),
             remanence=_remanence(file.remanence, mesh),
+            element=file.shell.element,
+            thickness_stretch=file.shell.thickness_stretch,
         )
         field = UniformField(file.field.flux_density, file.field.stops)
         supports = _supports(file.supports, mesh)

@@ -127,6 +127,8 @@ class ShellTable(Table):
     """What the surface is made into."""
 
     thickness: f.PositiveLength
+    element: Literal["quadratic", "paper", "paper-unenhanced", "paper-39"] = "quadratic"
+    thickness_stretch: Literal["linear", "none", "plane-stress"] = "linear"
 
 
 class _Material(Table):

@@ -52,7 +52,8 @@ class Interpolation(NamedTuple):
     rotation : ndarray, shape (elements, p, 3, nodes)
         Functions of the quaternions.
     enhancement : ndarray, shape (elements, p, 3, modes)
-        What the enhanced modes add to g_1, g_2, g_3: (√A at the centre / √A) f with ∫ f dξ dη = 0.
+        What the enhanced modes add to g_1, g_2, g_3: (√A at the centre / √A) f with ∫ f dξ dη = 0, in g_1 and g_2
+        times a length of the element, so that all parameters are numbers.
     """
 
     u: FloatArray
@@ -103,11 +104,13 @@ def interpolation(node_coordinates: FloatArray, normals: FloatArray, element: El
     enhancement = np.zeros((*u.values.shape[:2], 3, len(element.modes)))
     if element.modes:
         centre = element.functions(8, np.zeros((1, 2)), node_coordinates)
-        ratio = _area(centre.derivatives, node_coordinates) / _area(u.derivatives, node_coordinates)
+        area = _area(centre.derivatives, node_coordinates)
+        ratio = area / _area(u.derivatives, node_coordinates)
         for number, mode in enumerate(element.modes):
             f = parent[:, 0] ** mode.xi * parent[:, 1] ** mode.eta
             mean = element.rule.weights @ f / element.rule.weights.sum()
-            enhancement[:, :, mode.column - 1, number] = ratio * (f - mean)
+            length = np.sqrt(area) if mode.column < 3 else 1.0
+            enhancement[:, :, mode.column - 1, number] = length * ratio * (f - mean)
     return Interpolation(
         *(np.ascontiguousarray(a) for a in (u.derivatives, director, φ.values, rotation, enhancement))
     )
@@ -167,7 +170,7 @@ def least_shifts(geometry: SectionGeometry, thickness: float) -> FloatArray:
 
 
 def unit_forces(geometry: SectionGeometry, shape: Interpolation) -> FloatArray:
-    """Nodal forces of a stress of 1 Pa whose contributions do not cancel: norms over all elements for u, w, φ and ω.
+    """Forces of a stress of 1 Pa whose contributions do not cancel: norms over all elements for u, w, φ, ω and α.
 
     A stress is known to round-off times the modulus, so this times both is how small a residual can be told from zero.
     """
@@ -178,4 +181,5 @@ def unit_forces(geometry: SectionGeometry, shape: Interpolation) -> FloatArray:
     w += np.einsum("epn,epk,epk->en", np.abs(shape.director[:, :, 0]), leg[..., 2], volume)
     φ = 2.0 * np.einsum("epn,epk,k,epk->en", np.abs(shape.phi), leg[..., 2], z, volume)
     ω = np.einsum("epn,epk->en", np.abs(shape.rotation[:, :, 0]), volume)
-    return np.array([np.linalg.norm(forces) for forces in (u, w, φ, ω)])
+    α = np.einsum("epam,epka,epk->em", np.abs(shape.enhancement), leg, volume)
+    return np.array([np.linalg.norm(forces) for forces in (u, w, φ, ω, α)])

@@ -31,9 +31,11 @@ from magshell.shell.geometry import Interpolation, SectionGeometry
 from magshell.shell.point import SIZE, workspace
 from magshell.shell.rotation import LAST, NEXT
 from magshell.shell.section import predicted_stress, section
+from magshell.shell.plane_stress import eliminate_stretch
 from magshell.shell.state import State
 
 COMPONENTS = 10
+ELIMINATION_STEPS = 30
 
 
 class Body(NamedTuple):
@@ -47,6 +49,8 @@ class Body(NamedTuple):
     shape : Interpolation
     remanence : ndarray, shape (elements, points, 3)
         T.
+    plane_stress : bool
+        Whether φ is eliminated at each point.
     """
 
     elements: IntArray
@@ -54,6 +58,7 @@ class Body(NamedTuple):
     geometry: SectionGeometry
     shape: Interpolation
     remanence: FloatArray
+    plane_stress: bool
 
 
 class Stresses(NamedTuple):
@@ -264,12 +269,19 @@ def assemble(
         radial[:] = 0.0
         for p in range(points):
             point_values(shape, e, p, layout, v, x)
-            J = section(
-                material, couple_modulus, coupling, B, geometry, body.remanence, e, p, x,
-                stresses.P[e, p], stresses.kappa[e, p], mixed, tangent, w, g, g_mixed, H,
-            )  # fmt: skip
-            if not J > 0.0:
-                return e, J
+            eliminated = not body.plane_stress
+            for _ in range(ELIMINATION_STEPS):
+                J = section(
+                    material, couple_modulus, coupling, B, geometry, body.remanence, e, p, x,
+                    stresses.P[e, p], stresses.kappa[e, p], mixed, tangent or body.plane_stress, w, g, g_mixed, H,
+                )  # fmt: skip
+                if not J > 0.0:
+                    return e, J
+                eliminated = eliminated or eliminate_stretch(geometry.z[-1], x, g, H)
+                if eliminated:
+                    break
+            if not eliminated:
+                return e, 0.0
             contract(shape, e, p, layout, T, g, scratch_2, r)
             if tangent:
                 GH[:, :] = 0.0

@@ -1,11 +1,11 @@
-"""Element types, one per file, as declared data."""
+"""Element types as declared data."""
 
 from __future__ import annotations
 
 from magshell.shell.elements.definition import ElementType
-from magshell.shell.elements.paper import PAPER
+from magshell.shell.elements.paper import PAPER, PAPER_39, PAPER_UNENHANCED
 from magshell.shell.elements.quadratic import QUADRATIC
 
-ELEMENTS = {element.name: element for element in (QUADRATIC, PAPER)}
+ELEMENTS = {element.name: element for element in (QUADRATIC, PAPER, PAPER_UNENHANCED, PAPER_39)}
 
-__all__ = ["ELEMENTS", "PAPER", "QUADRATIC", "ElementType"]
+__all__ = ["ELEMENTS", "PAPER", "PAPER_39", "PAPER_UNENHANCED", "QUADRATIC", "ElementType"]

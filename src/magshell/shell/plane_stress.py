@@ -1,0 +1,37 @@
+r"""Plane stress: the thickness stretch φ eliminated at a point.
+
+With φ a variable of the point instead of a field, its equation is local: Σ_k volume 2 z d · t^3 = 0, that is, P33 has no
+moment across the thickness (that it has no mean is the equation of w along the director). With g and H the point's
+gradient and Hessian, a Newton step is Δφ = -g_φ / H_φφ; at the solution φ leaves H by its Schur complement.
+"""
+
+from __future__ import annotations
+
+from magshell.arrays import FloatArray
+from magshell.compiled import inline
+from magshell.shell.point import PHI, SIZE
+
+# Strains at the outermost level: round-off, and the most that one step may change.
+ROUND_OFF, LARGEST = 1e-13, 0.3
+
+
+@inline
+def eliminate_stretch(z: float, x: FloatArray, g: FloatArray, H: FloatArray) -> bool:
+    """Either move x[PHI] by a Newton step, or, where that is round-off, take φ out of g (31, 2) and H (31, 31).
+
+    z is the outermost level, where a step changes the stretch most.
+    """
+    stiffness = H[PHI, PHI]
+    step = -(g[PHI, 0] + g[PHI, 1]) / stiffness
+    if abs(step) * z > ROUND_OFF:
+        x[PHI] += min(max(step, -LARGEST / z), LARGEST / z)
+        return False
+    g[PHI, 0], g[PHI, 1] = 0.0, 0.0
+    for i in range(SIZE):
+        if i != PHI:
+            share = H[i, PHI] / stiffness
+            for j in range(SIZE):
+                H[i, j] -= share * H[PHI, j]
+    for i in range(SIZE):
+        H[i, PHI], H[PHI, i] = 0.0, 0.0
+    return True
