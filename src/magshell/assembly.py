@@ -14,6 +14,7 @@ from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.materials.law import strain_energy
 from magshell.model import Model
+from magshell.nodal import COLUMNS, COMPONENTS, width
 from magshell.shell import loops, rotation
 from magshell.shell.element import Layout
 from magshell.shell.evaluation import evaluate
@@ -23,8 +24,6 @@ from magshell.shell.state import State
 LEVELS = 2
 ROUND_OFF = 8.0 * np.finfo(float).eps
 KINDS = ("u", "w", "phi", "omega", "alpha")
-WIDTHS = {"u": 3, "w": 3, "phi": 1, "omega": 3}
-_COLUMNS = (slice(0, 3), slice(3, 6), slice(6, 7), slice(7, 10))
 Ordering = Callable[[sp.csr_array], IntArray]
 
 
@@ -115,11 +114,11 @@ class Discretisation:
         elements, values = len(mesh.elements), self.equations.local_node.size
         self._out = loops.Assembled(
             np.zeros(self.pattern.indices.size),
-            np.zeros((len(mesh.points), loops.COMPONENTS)),
-            np.zeros((len(mesh.points), loops.COMPONENTS)),
+            np.zeros((len(mesh.points), COMPONENTS)),
+            np.zeros((len(mesh.points), COMPONENTS)),
             np.zeros((elements, 3 * self.modes, values)),
             np.zeros((elements, 3 * self.modes)),
-            np.zeros((len(_COLUMNS), 2)),
+            np.zeros((len(COLUMNS), 2)),
             np.zeros(1),
         )
         self._matrix = sp.csc_array(
@@ -127,7 +126,7 @@ class Discretisation:
             shape=(self.dofs, self.dofs),
         )
         self._loads = self.to_frames(model.nodal_loads)
-        self._load_squares = np.array([np.sum(self._loads[:, columns] ** 2) for columns in _COLUMNS])
+        self._load_squares = np.array([np.sum(self._loads[:, columns] ** 2) for columns in COLUMNS.values()])
         self._transport = self._spin_transport()
 
     def _number_equations(self, ordering: Ordering) -> None:
@@ -156,7 +155,7 @@ class Discretisation:
         layout = self.body.layout
         carrying = [layout.u] * 3 + [layout.w] * 3 + [layout.phi] + [layout.q] * 3
         local_node = np.concatenate([np.arange(count) for count in carrying])
-        local_component = np.repeat(np.arange(loops.COMPONENTS), carrying)
+        local_component = np.repeat(np.arange(COMPONENTS), carrying)
         pairs = mesh.elements
         offset = (
             np.asarray(
@@ -191,9 +190,7 @@ class Discretisation:
 
     def stresses_at(self, state: State) -> loops.Stresses:
         """Stresses of the state itself, as a start for the mixed tangent."""
-        return self.predicted_stresses(
-            state, np.zeros((len(self.mesh.points), loops.COMPONENTS)), np.zeros_like(state.alpha)
-        )
+        return self.predicted_stresses(state, np.zeros((len(self.mesh.points), COMPONENTS)), np.zeros_like(state.alpha))
 
     def predicted_stresses(self, state: State, increment: FloatArray, d_alpha: FloatArray) -> loops.Stresses:
         """Stresses predicted linearly from a state for a nodal increment (nodes, 10) and Δα."""
@@ -268,8 +265,8 @@ class Discretisation:
         exactly one is, the loops over elements have all of c, load and reaction; where more are, [c]× does not meet
         two free rotations.
         """
-        numbers = self.equations.number[:, _COLUMNS[3]]
-        couples = self._loads[:, _COLUMNS[3]]
+        numbers = self.equations.number[:, COLUMNS["omega"]]
+        couples = self._loads[:, COLUMNS["omega"]]
         nodes = np.flatnonzero(np.any(couples, axis=1) & np.all(numbers >= 0, axis=1))
         if not nodes.size:
             return np.empty(0, dtype=np.int64), np.empty(0)
@@ -288,7 +285,7 @@ class Discretisation:
         α has the unit of w (both work on directors) and is measured against the same forces.
         """
         residual = np.where(self.free, self._out.residual, 0.0)
-        norms = [float(np.linalg.norm(residual[:, columns])) for columns in _COLUMNS]
+        norms = [float(np.linalg.norm(residual[:, columns])) for columns in COLUMNS.values()]
         norms.append(float(np.sqrt(self._out.enhancement_residual[0])))
         scales = np.sqrt(self._out.scale.sum(axis=1) + load_factor**2 * self._load_squares)
         above = np.maximum(np.array(norms) - self._noise, 0.0)
@@ -297,7 +294,7 @@ class Discretisation:
 
     def expand(self, solution: FloatArray, imposed: FloatArray | None = None) -> FloatArray:
         """Nodal increment (nodes, 10) in global axes of free unknowns (dofs,) and imposed components."""
-        increment = np.zeros((len(self.mesh.points), loops.COMPONENTS)) if imposed is None else imposed.copy()
+        increment = np.zeros((len(self.mesh.points), COMPONENTS)) if imposed is None else imposed.copy()
         increment[self.free] = solution[self._free_index]
         return self.to_global(increment)
 
@@ -311,7 +308,7 @@ class Discretisation:
 
     def _turned(self, nodal: FloatArray, rule: str) -> FloatArray:
         turned, constraints = nodal.copy(), self.model.constraints
-        for field, columns in enumerate((_COLUMNS[0], _COLUMNS[1], _COLUMNS[3])):
+        for field, columns in enumerate(COLUMNS[name] for name in ("u", "w", "omega")):
             oblique = np.flatnonzero(constraints.frame_of[:, field] >= 0)
             frames = constraints.frames[constraints.frame_of[oblique, field]]
             turned[oblique, columns] = np.einsum(rule, frames, nodal[oblique, columns])
@@ -395,7 +392,7 @@ class Discretisation:
         return np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2)
 
     def _filled(self, nodal: FloatArray, carriers: int) -> FloatArray:
-        """A field of so many nodes of each element; where that is the corners, mid-sides take the mean of their ends."""
+        """A field of an element's first nodes; where these are the corners, mid-sides take the mean of their ends."""
         if carriers == 8:
             return nodal
         values = nodal.copy()
@@ -405,7 +402,7 @@ class Discretisation:
 
 def _columns(carriers: dict[str, AnyArray]) -> AnyArray:
     """Which nodes have which columns of the nodal arrays: boolean (nodes, 10)."""
-    return np.column_stack([carriers[field] for field, width in WIDTHS.items() for _ in range(width)])
+    return np.column_stack([carriers[field] for field in COLUMNS for _ in range(width(field))])
 
 
 def _pattern(graph: sp.csr_array, order: IntArray, counts: IntArray) -> tuple[Pattern, sp.csr_array]:

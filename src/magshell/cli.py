@@ -30,6 +30,7 @@ examples:
   magshell examples --copy gripper        copy one to change it
   magshell check gripper.toml             see what was understood, without solving
   magshell run gripper.toml --out results
+  magshell reproduce --out reproduction   the source paper's examples beside what it says
 
 exit status: 0 solved, 1 not solved, 2 bad input, 130 interrupted""",
     "run": """
@@ -43,6 +44,14 @@ Every converged step is on disk at once: Ctrl-C keeps them.""",
 examples:
   magshell check gripper
   magshell check my-arm.toml""",
+    "reproduce": """
+examples:
+  magshell reproduce --out reproduction
+  magshell reproduce gripper strips --out reproduction
+
+NAME is one of strips, hollow-cross, thin-cross, h-shape, pump, gripper.
+DIR receives reproduction.csv, index.html (one page with everything, for a browser) and the figures.
+Each example is on disk as soon as it is solved: Ctrl-C keeps those that are done.""",
     "examples": """
 examples:
   magshell examples
@@ -110,6 +119,7 @@ def _parser() -> argparse.ArgumentParser:
         ("run", _run, "solve a problem and write the results"),
         ("check", _check, "say what a problem file means, without solving"),
         ("examples", _examples, "list the built-in problems, or copy one"),
+        ("reproduce", _reproduce, "solve the examples of the source paper and compare with it"),
     ):
         one = commands.add_parser(
             name,
@@ -120,9 +130,11 @@ def _parser() -> argparse.ArgumentParser:
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
         one.set_defaults(command=command)
-        if name != "examples":
+        if name in ("run", "check"):
             one.add_argument("problem", metavar="FILE|NAME", help="a problem file (.toml) or a built-in problem")
-        if name == "run":
+        if name == "reproduce":
+            one.add_argument("names", metavar="NAME", nargs="*", help="an example of the paper; all six without it")
+        if name in ("run", "reproduce"):
             one.add_argument("--out", metavar="DIR", required=True, help="folder for the results, made if missing")
         if name == "examples":
             one.add_argument("--copy", metavar="NAME", help="write the problem file of NAME to DEST")
@@ -170,6 +182,24 @@ def _run(given: argparse.Namespace) -> int:
         _say(console, f"picture: {picture}" if isinstance(picture, pathlib.Path) else picture)
     _say(console, f"results: {directory} (history.csv, summary.json; shell.pvd opens in ParaView)")
     return SOLVED if path.converged else NOT_SOLVED
+
+
+def _reproduce(given: argparse.Namespace) -> int:
+    from magshell.reproduction.catalogue import find
+    from magshell.reproduction.reproduce import reproduce
+
+    find(given.names)
+    console = _console()
+    directory = _made(pathlib.Path(given.out))
+    try:
+        result = reproduce(given.names, directory, console)
+    except KeyboardInterrupt:
+        _complain(f"interrupted; the examples that are done are in {directory}")
+        return INTERRUPTED
+    _say(console, f"results: {directory} (reproduction.csv, the figures; index.html opens in a browser)")
+    if result.failed:
+        _complain(f"not solved: {', '.join(result.failed)}; the reasons are in {directory / 'reproduction.csv'}")
+    return NOT_SOLVED if result.failed else SOLVED
 
 
 def _made(directory: pathlib.Path) -> pathlib.Path:

@@ -22,12 +22,12 @@ from numpy.typing import ArrayLike
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
 from magshell.mesh import Mesh
+from magshell.nodal import COLUMNS
 from magshell.shell.elements import ElementType
 from magshell.shell.shape_functions import gauss_legendre
 
 # Gauss points along an edge: they measure an edge that bends by a right angle to 1e-6 of its length.
 POINTS = 5
-_COLUMNS = {"u": slice(0, 3), "omega": slice(7, 10)}
 
 
 class Load(Protocol):
@@ -99,7 +99,7 @@ def nodal_forces(mesh: Mesh, element: ElementType, loads: Sequence[Load]) -> Flo
             shares = _shares(mesh, element, load)
         except InputError as error:
             raise InputError(f"{where}: {error}") from None
-        nodal[:, _COLUMNS[load.field]] += shares[:, None] * _total(where, load.total)
+        nodal[:, COLUMNS[load.field]] += shares[:, None] * _total(where, load.total)
     return nodal
 
 

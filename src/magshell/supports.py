@@ -12,8 +12,9 @@ from numpy.typing import ArrayLike
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError, suggest
 from magshell.mesh import Mesh
+from magshell.nodal import COLUMNS
 
-FIELDS = ("u", "w", "phi", "omega")
+FIELDS = tuple(COLUMNS)
 AXES = np.eye(3)
 
 
@@ -170,7 +171,6 @@ class Constraints(NamedTuple):
 
 
 AnyBool: TypeAlias = np.typing.NDArray[np.bool_]
-_COLUMN = {"u": 0, "w": 3, "phi": 6, "omega": 7}
 _FRAME = {"u": 0, "w": 1, "omega": 2}
 
 
@@ -200,8 +200,10 @@ def resolve(mesh: Mesh, supports: Supports, carriers: Mapping[str, AnyBool]) -> 
             if condition.field != "u":
                 carries = carriers[condition.field][members]
                 if not carries.any() and not condition.optional:
-                    absent = "no node of this shell carries" if not carriers[condition.field].any() else (
-                        f"node {members[0]} is a mid-side node and does not carry"
+                    absent = (
+                        "no node of this shell carries"
+                        if not carriers[condition.field].any()
+                        else (f"node {members[0]} is a mid-side node and does not carry")
                     )
                     raise InputError(f"support on '{condition.group}': {absent} '{condition.field}'")
                 members = members[carries]
@@ -210,7 +212,7 @@ def resolve(mesh: Mesh, supports: Supports, carriers: Mapping[str, AnyBool]) -> 
                     (condition.direction, condition.value, condition.group)
                 )
     for (node, field), wanted in directions.items():
-        column = _COLUMN[field]
+        column = COLUMNS[field].start
         base, values = _orthonormal(node, field, wanted)
         if field == "phi":
             fixed[node, column], value[node, column] = True, values[0]

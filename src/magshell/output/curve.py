@@ -11,12 +11,15 @@ from magshell.arrays import FloatArray
 from magshell.output.style import COLOURS, DPI, TEXT, TICKS, deliver
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from PIL.Image import Image
 
     from magshell.solver.path import Path
 
 NEGLIGIBLE = 0.01
+FIELD = r"$|B^\mathrm{ext}|$ (mT)"
+LOAD = r"$10^3\,|B^\mathrm{ext}|\,|B^\mathrm{rem}|\,/\,(\mu\,\mu_0)$"
 LINES = (("--", "s"), (":", "^"), ("-", "o"))
 
 
@@ -49,7 +52,6 @@ def draw_curve(path: Path, file: str | os.PathLike[str] | None = "curve.png") ->
 def curve_figure(path: Path) -> Figure:
     """The picture of `draw_curve` as a matplotlib figure, to go on working on."""
     from matplotlib.figure import Figure
-    from matplotlib.ticker import MaxNLocator
 
     figure = Figure(figsize=(9.0, 5.6), dpi=DPI, facecolor="white")
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.12)
@@ -60,19 +62,12 @@ def curve_figure(path: Path) -> Figure:
     for label, values, style in sorted(_curves(path), key=lambda curve: -curve[1][-1]):
         axes.plot(x, 1e3 * values, label=label, markersize=5, markeredgecolor="white", markeredgewidth=0.6, **style)
     axes.axhline(0, color="#9aa3ad", linewidth=0.8, zorder=1)
-    axes.set_xlabel("load factor" if field == 0 else r"$|B^\mathrm{ext}|$ (mT)", **TEXT)
+    axes.set_xlabel("load factor" if field == 0 else FIELD, **TEXT)
     axes.set_ylabel("displacement (mm)", **TEXT)
-    axes.margins(x=0.02)
-    axes.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
-    axes.grid(color="#e5e7eb", linewidth=0.8)
-    axes.spines["right"].set_visible(False)
-    axes.tick_params(**TICKS)
-    scale = _load_per_mT(path) if field > 0 else 0.0
+    dress(axes)
+    scale = load_per_mT(path) if field > 0 else 0.0
     if scale > 0:
-        above = axes.secondary_xaxis("top", functions=(_times(scale), _times(1 / scale)))
-        above.set_xlabel(r"$10^3\,|B^\mathrm{ext}|\,|B^\mathrm{rem}|\,/\,(\mu\,\mu_0)$", labelpad=8, **TEXT)
-        above.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
-        above.tick_params(**TICKS)
+        second_axis(axes, scale, LOAD)
     else:
         axes.spines["top"].set_visible(False)
     figure.legend(loc="outside right center", frameon=False, fontsize=14, handlelength=2.6, labelspacing=0.7)
@@ -102,11 +97,32 @@ def _literal(name: str) -> str:
     return name.replace("$", r"\$")
 
 
-def _times(factor: float) -> Any:
-    return lambda values: factor * values
+def dress(axes: Axes) -> None:
+    """Give the axes of a curve the house style."""
+    from matplotlib.ticker import MaxNLocator
+
+    axes.margins(x=0.02)
+    axes.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
+    axes.grid(color="#e5e7eb", linewidth=0.8)
+    axes.spines["right"].set_visible(False)
+    axes.tick_params(**TICKS)
 
 
-def _load_per_mT(path: Path) -> float:
+def second_axis(axes: Axes, factor: float, label: str) -> None:
+    """The horizontal axis a second time, above, in a unit that gives `factor` times the numbers."""
+    from matplotlib.ticker import MaxNLocator
+
+    above = axes.secondary_xaxis("top", functions=(_times(factor), _times(1 / factor)))
+    above.set_xlabel(label, labelpad=8, **TEXT)
+    above.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
+    above.tick_params(**TICKS)
+
+
+def load_per_mT(path: Path) -> float:
     """The nondimensional load of one millitesla: 10³ · 10⁻³ T · |Brem| / (mu mu0)."""
     remanence = np.linalg.norm(path.discretisation.body.remanence, axis=-1).max()
     return float(remanence / (path.model.shell.material.shear_modulus * path.model.coupling.vacuum_permeability))
+
+
+def _times(factor: float) -> Any:
+    return lambda values: factor * values

@@ -1,4 +1,4 @@
-"""The three-dimensional part of a picture of the shape: surface, edges, undeformed outline and field arrow.
+"""The three-dimensional part of a picture: camera, light, surface, edges, undeformed outline and field arrow.
 
 The camera looks in parallel projection: a place on the picture is a linear function of the position in space, so
 lettering can be set afterwards, and what moves along the line of sight (lines, to be in front of or behind the
@@ -7,6 +7,7 @@ body) stays where it is on the picture.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 OVERSAMPLING = 2
 MARGIN = 1.06
 MOST_ELEMENTS_WITH_EDGES = 4000
+SURFACE = {"smooth_shading": True, "specular": 0.12, "specular_power": 20, "ambient": 0.58}
+"""How surfaces take the light."""
 
 
 @dataclass(frozen=True)
@@ -115,7 +118,6 @@ def draw(
     RenderingUnavailable
         This machine cannot draw without a screen.
     """
-    require_rendering()
     import pyvista
 
     surface = tessellation.surface(mesh.points + displacement)
@@ -127,17 +129,46 @@ def draw(
     size = 2 * camera.half_height
     nearer = 2e-3 * size * axes[2]
     behind = -4 * size * axes[2]
-
-    def lines(positions: FloatArray, triples: AnyArray) -> Any:
-        curves = tessellation.edges(positions, triples)
-        numbers = np.arange(curves[..., 0].size).reshape(curves.shape[:2])
-        cells = np.insert(numbers, 0, curves.shape[1], axis=1)
-        return pyvista.PolyData(curves.reshape(-1, 3), lines=cells.ravel())
-
     edges = element_edges(mesh.elements) if len(mesh.elements) <= MOST_ELEMENTS_WITH_EDGES else mesh.boundary_edges
     body = pyvista.PolyData.from_regular_faces(surface.points, surface.triangles)
     body.point_data["colours"] = colours
     body.point_data.active_normals = surface.normals
+
+    def lines(positions: FloatArray, triples: AnyArray) -> Any:
+        return polylines(tessellation.edges(positions, triples))
+
+    def place(plotter: Any) -> None:
+        plotter.add_mesh(body, scalars="colours", rgb=True, **SURFACE)
+        thin = {"lighting": False, "line_width": 1.0 * OVERSAMPLING}
+        thick = {"lighting": False, "line_width": 1.9 * OVERSAMPLING}
+        position = mesh.points + displacement + nearer
+        plotter.add_mesh(lines(position, edges), color=INK, opacity=0.28, **thin)
+        plotter.add_mesh(lines(position, mesh.boundary_edges), color=INK, **thick)
+        plotter.add_mesh(lines(mesh.points + behind, edges), color=PALE, opacity=0.5, **thin)
+        plotter.add_mesh(lines(mesh.points, mesh.boundary_edges), color=PALE, **thick)
+        if arrow is not None:
+            plotter.add_mesh(arrow_body(arrow), color=ACCENT, smooth_shading=True, ambient=0.6)
+
+    return photograph(place, camera, shape), camera, arrow
+
+
+def photograph(place: Callable[[Any], None], camera: Camera, shape: tuple[int, int]) -> AnyArray:
+    """A picture of what `place` adds to the plotter it is given, on nothing.
+
+    Returns
+    -------
+    AnyArray, shape (height, width, 4)
+        Red, green, blue, opacity.
+
+    Raises
+    ------
+    RenderingUnavailable
+        This machine cannot draw without a screen.
+    """
+    require_rendering()
+    import pyvista
+
+    size = 2 * camera.half_height
     with pyvista.vtk_verbosity("error"):
         plotter = pyvista.Plotter(
             off_screen=True,
@@ -146,37 +177,43 @@ def draw(
             theme=pyvista.themes.DocumentTheme(),
         )
         try:
-            _light(plotter, axes)
-            plotter.add_mesh(
-                body,
-                scalars="colours",
-                rgb=True,
-                smooth_shading=True,
-                specular=0.12,
-                specular_power=20,
-                ambient=0.58,
-            )
-            thin = {"lighting": False, "line_width": 1.0 * OVERSAMPLING}
-            thick = {"lighting": False, "line_width": 1.9 * OVERSAMPLING}
-            position = mesh.points + displacement + nearer
-            plotter.add_mesh(lines(position, edges), color=INK, opacity=0.28, **thin)
-            plotter.add_mesh(lines(position, mesh.boundary_edges), color=INK, **thick)
-            plotter.add_mesh(lines(mesh.points + behind, edges), color=PALE, opacity=0.5, **thin)
-            plotter.add_mesh(lines(mesh.points, mesh.boundary_edges), color=PALE, **thick)
-            if arrow is not None:
-                length = float(np.linalg.norm(arrow[1] - arrow[0]))
-                plotter.add_mesh(_arrow_body(arrow, length), color=ACCENT, smooth_shading=True, ambient=0.6)
+            _light(plotter, camera.axes)
+            place(plotter)
             view = plotter.camera
             view.parallel_projection = True
             view.focal_point = camera.centre
-            view.position = camera.centre + 20 * size * axes[2]
-            view.up = axes[1]
+            view.position = camera.centre + 20 * size * camera.axes[2]
+            view.up = camera.axes[1]
             view.parallel_scale = camera.half_height
             plotter.renderer.reset_camera_clipping_range()
             picture = plotter.screenshot(None, return_img=True, transparent_background=True)
         finally:
             plotter.close()
-    return _reduce(np.asarray(picture), shape), camera, arrow
+    return _reduce(np.asarray(picture), shape)
+
+
+def polylines(curves: FloatArray) -> Any:
+    """Curves (k, points, 3) as a `pyvista.PolyData`."""
+    import pyvista
+
+    numbers = np.arange(curves[..., 0].size).reshape(curves.shape[:2])
+    return pyvista.PolyData(curves.reshape(-1, 3), lines=np.insert(numbers, 0, curves.shape[1], axis=1).ravel())
+
+
+def arrow_body(ends: FloatArray) -> Any:
+    """A solid arrow from tail to head (2, 3)."""
+    import pyvista
+
+    return pyvista.Arrow(
+        start=ends[0],
+        direction=ends[1] - ends[0],
+        scale=float(np.linalg.norm(ends[1] - ends[0])),
+        tip_length=0.3,
+        tip_radius=0.085,
+        shaft_radius=0.03,
+        tip_resolution=48,
+        shaft_resolution=48,
+    )
 
 
 def _arrow(field: FloatArray, extent: FloatArray, axes: FloatArray) -> FloatArray | None:
@@ -199,21 +236,6 @@ def _lettered(arrow: FloatArray, axes: FloatArray) -> FloatArray:
     aside = 0.3 * np.linalg.norm(vector) * axes[:2]
     ends = np.stack([arrow[0], arrow[1] + 0.2 * vector])
     return np.concatenate([ends + aside[0], ends - aside[0], ends + aside[1], ends - aside[1]])
-
-
-def _arrow_body(arrow: FloatArray, length: float) -> Any:
-    import pyvista
-
-    return pyvista.Arrow(
-        start=arrow[0],
-        direction=arrow[1] - arrow[0],
-        scale=length,
-        tip_length=0.3,
-        tip_radius=0.085,
-        shaft_radius=0.03,
-        tip_resolution=48,
-        shaft_resolution=48,
-    )
 
 
 def _light(plotter: Any, axes: FloatArray) -> None:

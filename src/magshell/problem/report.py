@@ -11,13 +11,13 @@ import numpy as np
 from magshell.arrays import FloatArray, IntArray
 from magshell.mesh import Mesh
 from magshell.mesh.quality import worst
+from magshell.nodal import width
 from magshell.problem import schema
 from magshell.problem.building import Problem
 from magshell.problem.fields import DIMENSION_OF_FIELD
 from magshell.units import FLUX_DENSITY, FORCE, LENGTH, MOMENT, STRESS, Dimension, show
 
 VACUUM_PERMEABILITY = 4e-7 * math.pi
-NODE_UNKNOWNS, CORNER_UNKNOWNS = 3, 7  # u everywhere; w, phi and the spin at corners
 
 
 @dataclass(frozen=True)
@@ -139,7 +139,8 @@ def _smallest_radius(mesh: Mesh) -> float:
 
 def _mesh(problem: Problem, extent: float) -> Iterator[tuple[str, str]]:
     mesh = problem.model.shell.mesh
-    unknowns = NODE_UNKNOWNS * len(mesh.points) + CORNER_UNKNOWNS * len(mesh.corner_nodes)
+    carriers = problem.model.shell.carriers
+    unknowns = sum(width(field) * int(nodes.sum()) for field, nodes in carriers.items())
     least, greatest = mesh.points.min(axis=0), mesh.points.max(axis=0)
     quality = worst(mesh)
     yield "generator", problem.file.mesh.generator

@@ -150,7 +150,7 @@ def contract(
     scratch: FloatArray,
     out: FloatArray,
 ) -> None:
-    """out += T̂ᵀGᵀ H at point p of element e: rows of the point (31) become rows of the element, whatever the columns."""
+    """out += T̂ᵀGᵀ H at point p of element e: the point's rows (31) become the element's, whatever the columns."""
     width = H.shape[1]
     for i in range(3):
         h1, h2, h3 = H[U1 + i], H[U1 + 3 + i], H[ENHANCED + i]

@@ -111,9 +111,7 @@ def interpolation(node_coordinates: FloatArray, normals: FloatArray, element: El
             mean = element.rule.weights @ f / element.rule.weights.sum()
             length = np.sqrt(area) if mode.column < 3 else 1.0
             enhancement[:, :, mode.column - 1, number] = length * ratio * (f - mean)
-    return Interpolation(
-        *(np.ascontiguousarray(a) for a in (u.derivatives, director, φ.values, rotation, enhancement))
-    )
+    return Interpolation(*(np.ascontiguousarray(a) for a in (u.derivatives, director, φ.values, rotation, enhancement)))
 
 
 def _area(derivatives: FloatArray, node_coordinates: FloatArray) -> FloatArray:

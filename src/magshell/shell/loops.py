@@ -14,6 +14,7 @@ from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.compiled import Kernel, inline
 from magshell.magnetics.law import Coupling
 from magshell.materials.law import Material
+from magshell.nodal import COMPONENTS
 from magshell.shell.element import (
     Layout,
     add_radial_force,
@@ -28,13 +29,12 @@ from magshell.shell.element import (
     transpose,
 )
 from magshell.shell.geometry import Interpolation, SectionGeometry
+from magshell.shell.plane_stress import eliminate_stretch
 from magshell.shell.point import SIZE, workspace
 from magshell.shell.rotation import LAST, NEXT
 from magshell.shell.section import predicted_stress, section
-from magshell.shell.plane_stress import eliminate_stretch
 from magshell.shell.state import State
 
-COMPONENTS = 10
 ELIMINATION_STEPS = 30
 
 

@@ -1,7 +1,7 @@
 r"""Plane stress: the thickness stretch φ eliminated at a point.
 
-With φ a variable of the point instead of a field, its equation is local: Σ_k volume 2 z d · t^3 = 0, that is, P33 has no
-moment across the thickness (that it has no mean is the equation of w along the director). With g and H the point's
+With φ a variable of the point instead of a field, its equation is local: Σ_k volume 2 z d · t^3 = 0, that is, P33 has
+no moment across the thickness (that it has no mean is the equation of w along the director). With g and H the point's
 gradient and Hessian, a Newton step is Δφ = -g_φ / H_φφ; at the solution φ leaves H by its Schur complement.
 """
 
