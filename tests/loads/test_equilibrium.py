@@ -1,0 +1,100 @@
+"""Solved shells under loads: linear beam theory, reactions, global balance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import magshell as ms
+from loads.bodies import arm, mixed_loads
+from magshell import Settings, solve
+from magshell.shell.elements import ELEMENTS
+
+LENGTH, WIDTH, THICKNESS = 20e-3, 2e-3, 1e-3
+MU = 303e3
+SMALL = 1e-4  # the deflection's size in lengths; large rotations change it by its square
+each_element = pytest.mark.parametrize("element", ELEMENTS)
+
+
+def cantilever(element: str, number: int, length_scale: float, load: Callable[[float], object]) -> ms.Path:
+    """A strip of so many elements without Poisson effect under a load that is given the stiffness 2 mu h³ b / 12.
+
+    The length scale is in thicknesses. The couple stress adds mu l² h b to the stiffness.
+    """
+    mesh = ms.mesh.rectangle(LENGTH, WIDTH, (number, 1))
+    material = ms.MicropolarNeoHookean(MU, 0.0, 0.1 * MU, length_scale * THICKNESS)
+    shell = ms.Shell(mesh, THICKNESS, material, element=element)
+    loads = [load(2.0 * MU * WIDTH * THICKNESS**3 / 12.0)]
+    probes = {"tip": (LENGTH, 0, 0), "middle": (0.5 * LENGTH, 0, 0)}
+    return solve(ms.Model(shell, [ms.Clamp("left")], loads=loads, probes=probes), Settings(first_step=1.0))
+
+
+@each_element
+def test_cantilever_bent_by_an_end_moment(element: str) -> None:
+    """Constant curvature M / (EI + mu l² A), which every element holds: u3 = κ x²/2.
+
+    At the loaded end the moment passes from the micro-rotation, where it acts, to the section. That layer is as long as
+    the length scale, of which an element has five: it moves the tip by 3e-4, and the middle by nothing.
+    """
+    couple, curvature = 6.0 * 0.1**2, SMALL / LENGTH
+    path = cantilever(element, 40, 0.1, lambda stiffness: ms.Moment("right", (0, -curvature * stiffness, 0)))
+    found = path.probe("middle").u3[-1] / (0.5 * curvature * (0.5 * LENGTH) ** 2)
+    assert found == pytest.approx(1.0 / (1.0 + couple), abs=SMALL**2), f"{found * (1.0 + couple) - 1.0:.2e}"
+
+
+@each_element
+def test_cantilever_bent_by_an_end_force(element: str) -> None:
+    """Timoshenko's beam with the shear stiffness mu A: u3 = P L³/3EI + P L/(mu A), without couple stress.
+
+    Where rotations are linear along an element, it holds the mean of the curvature P (L - x)/EI only, which loses
+    1/(4 n²) of the work. What is neglected are products of small terms and the couple stress, 6 (l/h)².
+    """
+    number, length_scale = 10, 1e-3
+    lost = 0.25 / number**2 if ELEMENTS[element].rest_nodes == 4 else 0.0
+    shear = 0.5 * (THICKNESS / LENGTH) ** 2
+    force = 3.0 * SMALL / LENGTH**2
+    path = cantilever(element, number, length_scale, lambda stiffness: ms.Force("right", (0, 0, force * stiffness)))
+    found = path.probe("tip").u3[-1] / (SMALL * LENGTH)
+    tolerance = 6.0 * length_scale**2 + shear**2 + shear * lost
+    assert found == pytest.approx(1.0 + shear - lost, abs=2.0 * tolerance), f"{found - 1.0 - shear + lost:.2e}"
+
+
+@pytest.fixture(scope="module", params=["loads", "loads and field"])
+def bent(request: pytest.FixtureRequest) -> ms.Path:
+    return solve(arm(mixed_loads(), field=0.0 if request.param == "loads" else 3e-3))
+
+
+def test_the_arm_bends(bent: ms.Path) -> None:
+    moved = np.abs(bent.steps[-1].state.u).max()
+    assert moved > 5e-3, f"{moved:.1e} m"
+
+
+def test_global_balance(bent: ms.Path) -> None:
+    for step in bent.steps[1:]:
+        assert step.balance.force_imbalance < 1e-8, f"{step.load_factor}: {step.balance.force_imbalance:.1e}"
+        assert step.balance.moment_imbalance < 1e-8, f"{step.load_factor}: {step.balance.moment_imbalance:.1e}"
+    assert bent.summary["force_imbalance"] == max(step.balance.force_imbalance for step in bent.steps[1:])
+
+
+def test_reaction_is_minus_the_load(bent: ms.Path) -> None:
+    """Forces against the totals as given; moments at the deformed nodes, from each load's own part."""
+    total = np.sum([load.total for load in bent.model.loads if isinstance(load, ms.Force)], axis=0)
+    couple = np.sum([load.total for load in bent.model.loads if isinstance(load, ms.Moment)], axis=0)
+    for step in bent.steps[1:]:
+        λ, found = step.load_factor, step.balance
+        assert found.load_force == pytest.approx(λ * total, abs=1e-14 * np.linalg.norm(total))
+        assert found.reaction_force == pytest.approx(-λ * total, abs=1e-8 * λ * np.linalg.norm(total))
+        position = bent.discretisation.mesh.points + step.state.u
+        moment = λ * (np.cross(position, bent.model.nodal_loads[:, :3]).sum(axis=0) + couple)
+        size = float(np.linalg.norm(moment))
+        assert found.load_moment == pytest.approx(moment, abs=1e-13 * size)
+        expected = -moment - found.magnetic_torque
+        assert found.reaction_moment == pytest.approx(expected, abs=1e-7 * size)
+
+
+def test_force_that_only_a_moment_exerts_is_measured_against_it() -> None:
+    """Pure bending leaves no force but round-off: over the couple on the body's size it is none."""
+    path = solve(arm([ms.Moment("bottom", (0, -1e-5, 0))]))
+    assert path.summary["force_imbalance"] < 1e-8, path.summary["force_imbalance"]

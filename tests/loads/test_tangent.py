@@ -1,0 +1,114 @@
+"""The tangent under dead loads: differences of the right side, and Newton's order, with couples on the nodes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from solver.models import LENGTH, THICKNESS, equation_numbers, rubber
+
+import magshell as ms
+from loads.bodies import arm
+from magshell import Settings, solve
+from magshell.assembly import Discretisation
+from magshell.linalg import make_solver, nested_dissection
+from magshell.shell.state import State
+from magshell.solver.newton import Trial, newton
+from magshell.supports import Condition
+
+SHARP = 1e-13
+BEGIN = 0.5
+BENDING = [ms.Moment("bottom", (2e-6, -1.2e-5, 4e-6)), ms.Force("half", (2e-4, 3e-4, 5e-4))]
+
+
+@dataclass(frozen=True)
+class Guide:
+    """No rotation about one axis, which is oblique."""
+
+    group: str
+    axis: tuple[float, float, float]
+
+    def conditions(self):
+        yield Condition(self.group, "omega", np.array(self.axis) / np.linalg.norm(self.axis), 0.0, optional=True)
+
+
+HELD = {
+    "free": [],
+    "one rotation": [ms.Prescribe("right", "omega", 2, 0.3)],
+    "one oblique rotation": [Guide("right", (1.0, 2.0, 0.5))],
+    "two rotations": [ms.Prescribe("right", "omega", 1, 0.1), ms.Prescribe("right", "omega", 2, 0.3)],
+}
+
+
+@pytest.mark.parametrize("held", HELD.values(), ids=HELD)
+def test_tangent_of_the_rotations_under_a_couple(held: list[object]) -> None:
+    """Columns of the tangent against central differences in equilibrium, scaled by the diagonal."""
+    mesh = ms.mesh.rectangle(LENGTH, 5e-3, (4, 1))
+    shell = ms.Shell(mesh, THICKNESS, rubber())
+    loads = [ms.Moment("right", (2e-5, -3e-5, 2e-5)), ms.Force("top", (0, 1e-3, 2e-3))]
+    model = ms.Model(shell, [ms.Clamp("left"), *held], loads=loads)
+    path = solve(model, Settings(tolerance=SHARP))
+    discretisation, state = path.discretisation, path.steps[-1].state
+    tip, step = int(np.argmin(np.linalg.norm(mesh.points - (LENGTH, 0, 0), axis=1))), 1e-6
+
+    def right_side(increment: np.ndarray) -> np.ndarray:
+        discretisation.assemble(state, 1.0)
+        moved = state.moved(increment, discretisation.recover(increment))
+        return discretisation.assemble(moved, 1.0).right_side
+
+    matrix = discretisation.assemble(state, 1.0).matrix.toarray()
+    scale = np.sqrt(np.abs(matrix.diagonal()))
+    equations = equation_numbers(discretisation)[tip]
+    rotations = equations[7:][equations[7:] >= 0]
+    assert rotations.size == 3 - np.count_nonzero(model.constraints.fixed[tip, 7:])
+    for equation in rotations:
+        unit = np.zeros(discretisation.dofs)
+        unit[equation] = step
+        increment = discretisation.expand(unit)
+        numeric = (right_side(-increment) - right_side(increment)) / (2 * step)
+        off = np.abs(numeric - matrix[:, equation]) / (scale * scale[equation])
+        assert off.max() < 1e-6, f"equation {equation}: {off.max():.1e} in equation {off.argmax()}"
+
+
+class Recording(Discretisation):
+    """Keeps the states at which residuals are made."""
+
+    def __init__(self, model: ms.Model) -> None:
+        super().__init__(model, nested_dissection)
+        self.states: list[State] = []
+
+    def assemble(self, state, *arguments, **options):
+        self.states.append(state)
+        return super().assemble(state, *arguments, **options)
+
+
+def scaled(factor: float) -> list[object]:
+    return [type(load)(load.group, factor * np.array(load.total)) for load in BENDING]
+
+
+@cache
+def converged() -> State:
+    """The arm's state at the load factor BEGIN."""
+    return solve(arm(scaled(BEGIN)), Settings(tolerance=SHARP)).steps[-1].state
+
+
+def errors(ε: float) -> np.ndarray:
+    """Distance of u from the solution before and after each of two iterations, m (root of the sum of squares)."""
+    discretisation, start = Recording(arm(BENDING)), converged()
+    trial = Trial(start, discretisation.stresses_at(start), None)
+    settings = Settings(tolerance=SHARP, max_iterations=20)
+    newton(discretisation, make_solver("superlu"), trial, BEGIN * (1 + ε), settings, lambda *_: None)
+    *iterates, solution = discretisation.states
+    return np.array([np.linalg.norm(state.u - solution.u) for state in iterates[:3]])
+
+
+def test_newton_has_orders_1_2_4_under_a_dead_moment() -> None:
+    sizes = [0.02, 0.01, 0.005]
+    found = [errors(size) for size in sizes]
+    for ε, (large, small) in zip(sizes[1:], pairwise(found), strict=True):
+        orders = np.log2(large / small)
+        # the next term of each expansion is smaller by a factor of the relative size of the increment
+        assert orders == pytest.approx([1, 2, 4], abs=2 * ε), f"ε = {ε}: {orders}, errors {small}"
