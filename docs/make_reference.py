@@ -119,7 +119,16 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
         },
     ),
     "selection": (schema.Selection, {f"x{i}": f"Coordinate $X_{i}$; left out, it is free." for i in (1, 2, 3)}),
-    "shell": (schema.ShellTable, {"thickness": "$h$."}),
+    "shell": (
+        schema.ShellTable,
+        {
+            "thickness": "$h$.",
+            "element": "Quadratic in $u$, director and micro-rotation; or the paper's, with 6, 0 or 39 enhanced "
+            "parameters.",
+            "thickness_stretch": "Stretch that varies linearly across the thickness: an unknown $\\varphi$, none "
+            "(locks in bending), or eliminated at each point.",
+        },
+    ),
     "neo-hookean": (schema.NeoHookean, MATERIAL),
     "mooney-rivlin": (
         schema.MooneyRivlin,

@@ -39,7 +39,7 @@ def test_figures_of_the_strip() -> None:
     assert entry(report, "Material", "coupling modulus eta") == "30.3 kPa = 0.1 mu"
     assert entry(report, "Material", "length scale l") == "0.1 mm = 0.1 h"
     assert entry(report, "Mesh", "elements, nodes") == "4, 23"
-    assert entry(report, "Mesh", "unknowns") == f"{3 * 20 + 7 * 8 + 2}, and {3 * 23 + 7 * 10} before supports"
+    assert entry(report, "Mesh", "unknowns") == f"{9 * 20 + 10}, and {9 * 23 + 10} before supports"
     assert entry(report, "Supports", "left") == "clamp, 3 nodes"
     assert entry(report, "Probes", "tip").endswith("at (20 mm, 0, 0)")
     assert entry(report, "Field", "stops") == "1 mT, 2 mT"

@@ -13,8 +13,10 @@ from magshell.errors import InputError
 from magshell.units import (
     ANGLE,
     FLUX_DENSITY,
+    FORCE,
     INVERSE_LENGTH,
     LENGTH,
+    MOMENT,
     NUMBER,
     STRESS,
     Dimension,
@@ -22,7 +24,7 @@ from magshell.units import (
     show,
 )
 
-DIMENSIONS = (LENGTH, STRESS, FLUX_DENSITY, ANGLE, INVERSE_LENGTH)
+DIMENSIONS = (LENGTH, STRESS, FLUX_DENSITY, ANGLE, INVERSE_LENGTH, FORCE, MOMENT)
 EXACT = [(dimension, unit) for dimension in DIMENSIONS for unit in dimension.units if unit != "deg"]
 finite = st.floats(min_value=-1e100, max_value=1e100, allow_nan=False).filter(lambda x: x == 0 or abs(x) > 1e-100)
 
@@ -42,6 +44,10 @@ finite = st.floats(min_value=-1e100, max_value=1e100, allow_nan=False).filter(la
         ("2.5 1/mm", INVERSE_LENGTH, 2500.0),
         ("2/mm", INVERSE_LENGTH, 2000.0),
         ("-1e-3 m", LENGTH, -1e-3),
+        ("2 mN", FORCE, 2e-3),
+        ("1e-3 N m", MOMENT, 1e-3),
+        ("1 N mm", MOMENT, 1e-3),
+        ("5  mN  mm", MOMENT, 5e-6),
         (0, LENGTH, 0.0),
         ("0", STRESS, 0.0),
         (0.0, ANGLE, 0.0),
@@ -97,6 +103,9 @@ def test_anything_else_is_an_input_error(value: object) -> None:
         ("94 MT", FLUX_DENSITY, ("94 MT", "did you mean 'mT'", "magnetic flux density")),
         ("135 Kpa", STRESS, ("135 Kpa", "did you mean 'kPa'")),
         ("3 mm", NUMBER, ("unit 'mm'",)),
+        ("3 N", MOMENT, ("force", "moment", "N m, N mm")),
+        ("3 Nm", MOMENT, ("did you mean 'N m'",)),
+        ("3 N mm", FORCE, ("moment", "force", "N, kN, mN")),
         ("nan mm", LENGTH, ("not a finite number",)),
         (float("inf"), LENGTH, ("not a finite number",)),
         ("1e400 mm", LENGTH, ("not a finite number",)),
@@ -124,6 +133,9 @@ def test_says_what_is_wrong(value: object, dimension: Dimension, words: tuple[st
         (3.25e6, STRESS, "3.25 MPa"),
         (-50e-3, FLUX_DENSITY, "-50 mT"),
         (0.0, FLUX_DENSITY, "0"),
+        (2e-3, FORCE, "2 mN"),
+        (1e-5, MOMENT, "0.01 N mm"),
+        (-2.5, MOMENT, "-2.5 N m"),
         (math.radians(15), ANGLE, "15 deg"),
         (0.123456, NUMBER, "0.1235"),
     ],

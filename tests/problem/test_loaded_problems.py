@@ -1,0 +1,59 @@
+"""Problem files whose loads are mechanical: what becomes of them, and the example of the documentation."""
+
+from __future__ import annotations
+
+import csv
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from problem_files import LOADED, changed
+
+from magshell import problem
+from magshell.cli import main
+from magshell.problem.building import build
+from magshell.problem.reading import check, parse
+
+PAGE = Path(__file__).parents[2] / "docs" / "problem-file.md"
+
+
+def built(text: str) -> problem.building.Problem:
+    return build(check(parse(text, "test.toml"), "test.toml"), "test.toml")
+
+
+def test_loads_reach_the_model_in_si() -> None:
+    loads = built(LOADED).model.loads
+    assert [(load.kind, load.group, load.total) for load in loads] == [
+        ("force", "far", (0.0, 0.0, 2e-3)),
+        ("moment", "right", (0.0, 1e-5, 0.0)),
+    ]
+
+
+def test_loads_beside_a_field() -> None:
+    field = '[field]\nflux_density = [0, 0, "2 mT"]\n\n[[supports]]'
+    model = built(changed(LOADED, ("[[supports]]", field))).model
+    assert model.field.magnitude == 2e-3
+    assert model.nodal_loads.sum(axis=0)[2] == pytest.approx(2e-3, rel=1e-14)
+
+
+def test_the_example_of_the_page() -> None:
+    section = PAGE.read_text(encoding="utf-8").split("## `[[loads]]`")[1]
+    found = re.search(r"```toml\n(.*?)```", section, re.DOTALL)
+    assert found
+    loads = LOADED[LOADED.index("[[loads]]") : LOADED.index("[[supports]]")]
+    nodal = built(changed(LOADED, (loads, found[1]))).model.nodal_loads
+    assert nodal.sum(axis=0) == pytest.approx([0, 0, 2e-3, 0, 0, 0, 0, 0, 1e-5, 0], rel=1e-14)
+
+
+def test_history_without_a_field_holds_zeros(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "loaded.toml").write_text(LOADED)
+    assert main(["run", str(tmp_path / "loaded.toml"), "--out", str(tmp_path / "out")]) == 0
+    assert "solved at 100 %:" in capsys.readouterr().out
+    with (tmp_path / "out" / "history.csv").open(newline="") as file:
+        heading, *rows = csv.reader(file)
+    assert heading[:4] == ["load_factor", "B1", "B2", "B3"]
+    values = np.array(rows, dtype=float)
+    assert not np.any(values[:, 1:4])
+    assert values[-1, 0] == 1.0
+    assert values[-1, heading.index("tip.u3")] > 1e-3
