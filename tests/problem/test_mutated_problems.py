@@ -1,4 +1,4 @@
-"""A built-in problem damaged at random is refused with its place or still a problem; nothing else happens."""
+"""A problem file damaged at random is refused with its place or still a problem; nothing else happens."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from problem_files import LOADED
 
 from magshell.errors import InputError
 from magshell.problem import examples
@@ -44,7 +45,7 @@ NEW_WORDS = st.one_of(
     st.floats().map(repr),
     st.text(max_size=5),
 )
-TEXTS = st.sampled_from(["strip-10", "gripper", "pump", "thin-cross"]).map(examples.text)
+TEXTS = st.sampled_from([LOADED, *map(examples.text, ("strip-10", "gripper", "pump", "thin-cross"))])
 
 
 @st.composite
