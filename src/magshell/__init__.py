@@ -19,7 +19,7 @@ if TYPE_CHECKING:
         UniformField,
         remanence,
     )
-    from magshell.materials import MicropolarMooneyRivlin, MicropolarNeoHookean
+    from magshell.materials import MicropolarMooneyRivlin, MicropolarNeoHookean, MicropolarStVenantKirchhoff
     from magshell.model import Model, Shell
     from magshell.solver import Observer, Path, Settings, Step, solve
     from magshell.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane
@@ -35,7 +35,7 @@ _HOME = {
         "MicropolarCouple",
         "UniformField",
     ),
-    "magshell.materials": ("MicropolarMooneyRivlin", "MicropolarNeoHookean"),
+    "magshell.materials": ("MicropolarMooneyRivlin", "MicropolarNeoHookean", "MicropolarStVenantKirchhoff"),
     "magshell.model": ("Model", "Shell"),
     "magshell.solver": ("Observer", "Path", "Settings", "Step", "solve"),
     "magshell.supports": ("Clamp", "Prescribe", "SimpleSupport", "SymmetryPlane"),
@@ -53,6 +53,7 @@ __all__ = [
     "MicropolarCouple",
     "MicropolarMooneyRivlin",
     "MicropolarNeoHookean",
+    "MicropolarStVenantKirchhoff",
     "Model",
     "Moment",
     "Observer",

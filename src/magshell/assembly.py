@@ -92,7 +92,7 @@ class Discretisation:
         mesh = self.mesh
         element, thickness = model.shell.element, model.shell.thickness
         coordinates, normals = mesh.points[mesh.elements], model.normals[mesh.elements]
-        shape = interpolation(coordinates, normals, element)
+        shape = interpolation(coordinates, normals, element, model.shell.micro_rotation)
         geometry = section_geometry(coordinates, normals, shape, element.rule.weights, thickness, LEVELS)
         _check_thickness(least_shifts(geometry, thickness))
         functions = element.functions(8, element.rule.points, coordinates)
@@ -102,7 +102,7 @@ class Discretisation:
             bad = int(np.flatnonzero(~np.isfinite(remanence).all(axis=(1, 2)))[0])
             raise InputError(f"remanence: it is not finite in element {bad}")
         self.modes = len(element.modes)
-        layout = Layout(8, element.rest_nodes, element.stretch_nodes, element.rest_nodes, self.modes)
+        layout = Layout(8, element.rest_nodes, element.stretch_nodes, shape.rotation.shape[-1], self.modes)
         self.body = loops.Body(
             np.ascontiguousarray(mesh.elements), layout, geometry, shape, remanence,
             model.shell.thickness_stretch == "plane-stress",
@@ -132,8 +132,7 @@ class Discretisation:
     def _number_equations(self, ordering: Ordering) -> None:
         mesh, constraints = self.mesh, self.model.constraints
         nodes, per_element = len(mesh.points), mesh.elements.shape[1]
-        element, shell = self.model.shell.element, self.model.shell
-        in_element, carried = _columns(element.carriers(mesh.elements, nodes)), _columns(shell.carriers)
+        carried = _columns(self.model.shell.carriers)
         free = carried & ~constraints.fixed
         self.carried, self.free = carried, free
         incidence = sp.csr_array(
@@ -168,7 +167,7 @@ class Discretisation:
             local_component.astype(np.int64),
             number,
             rank,
-            (free == in_element).all(axis=1),
+            _whole(free, mesh.elements, carrying),
             self.pattern.indptr,
             offset,
             np.ascontiguousarray(constraints.frame_of),
@@ -398,6 +397,14 @@ class Discretisation:
         values = nodal.copy()
         values[self._mid_sides] = nodal[self._mid_side_ends].mean(axis=1)
         return values
+
+
+def _whole(free: AnyArray, elements: IntArray, carrying: list[int]) -> AnyArray:
+    """Nodes (nodes,) of which every component that the elements give values to is free."""
+    valued = np.zeros_like(free)
+    for column, count in enumerate(carrying):
+        valued[elements[:, :count], column] = True
+    return (free == valued).all(axis=1)
 
 
 def _columns(carriers: dict[str, AnyArray]) -> AnyArray:

@@ -48,6 +48,9 @@ class Shell:
     thickness_stretch : {"linear", "none", "plane-stress"}, optional
         Stretch of the thickness that varies linearly across it: an unknown φ, absent (this locks in bending), or
         eliminated at each point so that P33 has no moment.
+    micro_rotation : bool, optional
+        False: the classical shell of seven parameters (u, w, φ). The material's coupling_modulus and length_scale must
+        then be 0, and only `DeformationGradientEnergy` can couple a field to it.
 
     Raises
     ------
@@ -61,6 +64,7 @@ class Shell:
     remanence: Remanence = NO_REMANENCE
     element: Any = QUADRATIC
     thickness_stretch: str = "linear"
+    micro_rotation: bool = True
 
     def __post_init__(self) -> None:
         thickness = _positive("shell: thickness", self.thickness, "m")
@@ -72,10 +76,13 @@ class Shell:
         for name, value in zip(self.material._fields, self.material, strict=True):
             value = float(value)
             where = f"material: {name}"
-            if not np.isfinite(value) or value < 0.0 or (value == 0.0 and name in ("shear_modulus", "length_scale")):
-                allowed = "positive" if name in ("shear_modulus", "length_scale") else "zero or positive"
+            positive = name == "shear_modulus" or (name == "length_scale" and self.micro_rotation)
+            if not np.isfinite(value) or value < 0.0 or (value == 0.0 and positive):
+                allowed = "positive" if positive else "zero or positive"
                 raise InputError(f"{where} is {value:g}; it must be finite and {allowed}")
             values.append(value)
+            if not self.micro_rotation and name in ("coupling_modulus", "length_scale") and value > 0.0:
+                raise InputError(f"{where} is {value:g}; without micro-rotation it must be 0")
         material = type(self.material)(*values)
         for problem in material.problems():
             raise InputError(f"material: {problem}")
@@ -97,6 +104,8 @@ class Shell:
         carriers: dict[str, AnyArray] = self.element.carriers(self.mesh.elements, count)
         if self.thickness_stretch != "linear":
             carriers["phi"] = np.zeros(count, dtype=bool)
+        if not self.micro_rotation:
+            carriers["omega"] = np.zeros(count, dtype=bool)
         return carriers
 
 
@@ -112,7 +121,8 @@ class Model:
     field : UniformField, optional
         By default none.
     coupling : Coupling, optional
-        Magnetic coupling law; by default the couple of the micropolar theory.
+        Magnetic coupling law; by default the couple of the micropolar theory, or without micro-rotation the energy of
+        the deformation gradient.
     probes : mapping of str to (3,) array_like, optional
         Reference positions of nodes to follow, m.
     loads : sequence of Load
@@ -145,7 +155,8 @@ class Model:
     def __post_init__(self) -> None:
         mesh = self.shell.mesh
         put = object.__setattr__
-        put(self, "coupling", MicropolarCouple() if self.coupling is None else self.coupling)
+        if self.coupling is None:
+            put(self, "coupling", MicropolarCouple() if self.shell.micro_rotation else DeformationGradientEnergy())
         put(self, "supports", tuple(self.supports))
         put(self, "constraints", resolve(mesh, self.supports, self.shell.carriers))
         put(self, "loads", tuple(self.loads))
@@ -170,6 +181,8 @@ class Model:
             worker = type(self.coupling).__name__
         else:
             return
+        if not self.shell.micro_rotation:
+            raise InputError(f"shell: {worker} works on the micro-rotation, which this shell does not have")
         raise InputError(
             f"material: coupling_modulus is 0, so the micro-rotation that {worker} works on "
             "never reaches the deformation; the source takes a tenth of shear_modulus"

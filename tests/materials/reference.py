@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from shell.jets import log
 
-from magshell.materials import MicropolarMooneyRivlin, MicropolarNeoHookean
+from magshell.materials import MicropolarMooneyRivlin, MicropolarNeoHookean, MicropolarStVenantKirchhoff
 
 
 def cofactor(U):
@@ -37,5 +37,18 @@ def mooney_rivlin(material, U):
     return invariants - (mu1 + 2 * mu2) * log(J) + volumetric + relative_rotation(material, U)
 
 
-ENERGIES = {MicropolarNeoHookean: neo_hookean, MicropolarMooneyRivlin: mooney_rivlin}
+def st_venant_kirchhoff(material, U):
+    """lambda/2 (tr E)² + mu tr E², from the invariants of C = UᵀU: tr E = (I_1 - 3)/2, tr E² = (tr C² - 2 I_1 + 3)/4."""
+    C = U.T @ U
+    first = np.trace(C)
+    square = np.sum(C * C)
+    volumetric = 0.125 * material.lame_lambda * (first - 3) ** 2
+    return volumetric + 0.25 * material.shear_modulus * (square - 2 * first + 3) + relative_rotation(material, U)
+
+
+ENERGIES = {
+    MicropolarNeoHookean: neo_hookean,
+    MicropolarMooneyRivlin: mooney_rivlin,
+    MicropolarStVenantKirchhoff: st_venant_kirchhoff,
+}
 """W(U) by law; a new law needs its entry here."""

@@ -74,10 +74,11 @@ def build(file: ProblemFile, source: str) -> Problem:
         shell = Shell(
             mesh=mesh,
             thickness=file.shell.thickness,
-            material=_material(file.material, file.shell.thickness),
+            material=_material(file.material, file.shell),
             remanence=_remanence(file.remanence, mesh),
             element=file.shell.element,
             thickness_stretch=file.shell.thickness_stretch,
+            micro_rotation=file.shell.micro_rotation,
         )
         field = UniformField(file.field.flux_density, file.field.stops)
         supports = _supports(file.supports, mesh)
@@ -145,16 +146,19 @@ def _bounded(*divisions: tuple[int, int]) -> None:
         raise InputError(f"elements: asks for {elements} elements; at most {MOST_ELEMENTS} can be solved")
 
 
-def _material(table: schema.Material, thickness: float) -> Material:
+def _material(table: schema.Material, shell: schema.ShellTable) -> Material:
     eta, length = table.coupling_modulus, table.length_scale
+    usual = (table.shear_modulus / 10.0, shell.thickness / 10.0) if shell.micro_rotation else (0.0, 0.0)
     parameters = {
         "shear_modulus": table.shear_modulus,
         "lame_lambda": table.lame_lambda,
-        "coupling_modulus": table.shear_modulus / 10.0 if eta is None else eta,
-        "length_scale": thickness / 10.0 if length is None else length,
+        "coupling_modulus": usual[0] if eta is None else eta,
+        "length_scale": usual[1] if length is None else length,
     }
     if isinstance(table, schema.MooneyRivlin):
         return materials.MicropolarMooneyRivlin(**parameters, second_invariant_share=table.second_invariant_share)
+    if isinstance(table, schema.StVenantKirchhoff):
+        return materials.MicropolarStVenantKirchhoff(**parameters)
     return materials.MicropolarNeoHookean(**parameters)
 
 

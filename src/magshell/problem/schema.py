@@ -129,6 +129,7 @@ class ShellTable(Table):
     thickness: f.PositiveLength
     element: Literal["quadratic", "paper", "paper-unenhanced", "paper-39"] = "quadratic"
     thickness_stretch: Literal["linear", "none", "plane-stress"] = "linear"
+    micro_rotation: StrictBool = True
 
 
 class _Material(Table):
@@ -149,6 +150,12 @@ class MooneyRivlin(_Material):
 
     law: Literal["micropolar-mooney-rivlin"]
     second_invariant_share: f.Number = 0.25
+
+
+class StVenantKirchhoff(_Material):
+    """Micropolar St Venant–Kirchhoff material."""
+
+    law: Literal["micropolar-st-venant-kirchhoff"]
 
 
 class _Remanence(Table):
@@ -289,7 +296,7 @@ class SolverTable(Table):
 
 
 Mesh: TypeAlias = Rectangle | Blocks | Cylinder | SpherePatch
-Material: TypeAlias = NeoHookean | MooneyRivlin
+Material: TypeAlias = NeoHookean | MooneyRivlin | StVenantKirchhoff
 Remanence: TypeAlias = ConstantRemanence | MeridionalRemanence | CircumferentialRemanence
 Support: TypeAlias = ClampTable | SimpleTable | SymmetryTable | PrescribeTable
 Load: TypeAlias = ForceTable | MomentTable

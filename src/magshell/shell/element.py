@@ -92,7 +92,7 @@ def gather(
 
 @inline
 def point_values(shape: Interpolation, e: int, p: int, layout: Layout, v: FloatArray, x: FloatArray) -> None:
-    """x = G v at point p of element e."""
+    """x = G v at point p of element e; without micro-rotation q̂ is the identity."""
     for i in range(3):
         at_u, at_w = place(i, 0, layout), place(3 + i, 0, layout)
         at_α = place(7, 0, layout) + 4 * layout.q + i * layout.modes
@@ -125,6 +125,8 @@ def point_values(shape: Interpolation, e: int, p: int, layout: Layout, v: FloatA
             s1 += shape.rotation[e, p, 1, n] * v[at + n]
             s2 += shape.rotation[e, p, 2, n] * v[at + n]
         x[Q + c], x[Q1 + c], x[Q1 + 4 + c] = s0, s1, s2
+    if layout.q == 0:
+        x[Q] = 1.0
 
 
 @inline

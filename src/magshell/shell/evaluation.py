@@ -44,6 +44,9 @@ def evaluate(body: Body, state: State) -> PointFields:
     g_3 = (1.0 + 2.0 * z * φ[..., None])[..., None] * d[:, :, None]
     g = np.concatenate([g_tangent, g_3[:, :, :, None]], axis=3) + enhanced[:, :, None]
     F = np.einsum("epkax,epkay->epkxy", g, geometry.G)
+    if not body.layout.q:
+        R = np.broadcast_to(np.eye(3), (*a.shape[:2], 3, 3))
+        return PointFields(F, R, np.zeros_like(a))
     q_nodes = state.q[rest]
     q_nodes = q_nodes * np.where(np.sum(q_nodes * q_nodes[:, :1], axis=-1, keepdims=True) < 0.0, -1.0, 1.0)
     q, dq = (np.einsum("epan,enc->epac", shape.rotation[:, :, rows], q_nodes) for rows in (slice(0, 1), slice(1, 3)))

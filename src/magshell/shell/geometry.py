@@ -86,7 +86,9 @@ def director_functions(normals: FloatArray, N: FloatArray, dN: FloatArray) -> Fl
     return np.concatenate([values[:, :, None], derivatives], axis=2)
 
 
-def interpolation(node_coordinates: FloatArray, normals: FloatArray, element: ElementType) -> Interpolation:
+def interpolation(
+    node_coordinates: FloatArray, normals: FloatArray, element: ElementType, micro_rotation: bool
+) -> Interpolation:
     """Functions of an element type at the points of its rule.
 
     Parameters
@@ -94,6 +96,8 @@ def interpolation(node_coordinates: FloatArray, normals: FloatArray, element: El
     node_coordinates, normals : ndarray, shape (elements, 8, 3)
         m; unit normals at the nodes, shared by the elements that meet there.
     element : ElementType
+    micro_rotation : bool
+        Without it no node carries a quaternion.
     """
     parent = element.rule.points
     u = element.functions(8, parent, node_coordinates)
@@ -101,6 +105,8 @@ def interpolation(node_coordinates: FloatArray, normals: FloatArray, element: El
     φ = element.functions(element.stretch_nodes, parent, node_coordinates)
     director = director_functions(normals[:, : element.rest_nodes], rest.values, rest.derivatives)
     rotation = np.concatenate([rest.values[:, :, None], rest.derivatives], axis=2)
+    if not micro_rotation:
+        rotation = rotation[..., :0]
     enhancement = np.zeros((*u.values.shape[:2], 3, len(element.modes)))
     if element.modes:
         centre = element.functions(8, np.zeros((1, 2)), node_coordinates)
