@@ -1,8 +1,9 @@
-"""What every test of the numerics runs over: all registered laws, small meshes, and a model that nothing holds.
+"""What every test of the numerics runs over: registered laws and element types, small meshes, a model nothing holds.
 
 A law joins all tests here by being registered (`material_law`, `coupling_law`), and by having its reference formula in
-`materials/reference.py` or `magnetics/reference.py`. Everything is of the order of one: elements of unit size, a shear
-modulus and a permeability of one, so that figures of different kinds can be compared.
+`materials/reference.py` or `magnetics/reference.py`; an element type by being in `magshell.shell.elements.ELEMENTS`.
+All laws meet one element type, all element types meet one pair of laws. Everything is of the order of one: elements of
+unit size, a shear modulus and a permeability of one, so that figures of different kinds can be compared.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from magshell.loads import nodal_forces
 from magshell.magnetics import UniformField, remanence
 from magshell.mesh import Mesh, rectangle
 from magshell.model import Shell
+from magshell.shell.elements import ELEMENTS, QUADRATIC
 from magshell.shell.normals import nodal_normals
 from magshell.shell.state import State
 from magshell.supports import resolve
@@ -49,13 +51,30 @@ MATERIALS = [example(law) for law in materials.laws()]
 COUPLINGS = [example(law) for law in magnetics.laws()]
 MATERIAL, COUPLING = materials.MicropolarNeoHookean, magnetics.MicropolarCouple
 
+each_element = pytest.mark.parametrize("element", ELEMENTS.values(), ids=ELEMENTS)
 each_material = pytest.mark.parametrize("material", MATERIALS, ids=name_of)
 each_coupling = pytest.mark.parametrize("coupling", COUPLINGS, ids=name_of)
 
 
-def each_pair(function):
-    """Run a test over every material law with every coupling law."""
-    return each_material(each_coupling(function))
+PAIRS = [
+    (material, coupling)
+    for material in MATERIALS
+    for coupling in COUPLINGS
+    if isinstance(material, MATERIAL) or isinstance(coupling, COUPLING)
+]
+"""Each law with one of the other kind: they meet in a sum only."""
+
+
+each_pair = pytest.mark.parametrize(("material", "coupling"), PAIRS, ids=["-".join(map(name_of, p)) for p in PAIRS])
+
+
+def each_combination(function):
+    """Run a test over every pair of laws with one element type, and over the other types with one pair."""
+    cases = [(QUADRATIC, *pair) for pair in PAIRS]
+    others = [element for element in ELEMENTS.values() if element is not QUADRATIC]
+    cases += [(element, example(MATERIAL), example(COUPLING)) for element in others]
+    labels = [f"{element.name}-{name_of(material)}-{name_of(coupling)}" for element, material, coupling in cases]
+    return pytest.mark.parametrize(("element", "material", "coupling"), cases, ids=labels)(function)
 
 
 # -- meshes ----------------------------------------------------------------------------------------------------------
@@ -96,7 +115,7 @@ def with_points(mesh, points):
     return Mesh(points, mesh.elements, mesh.element_groups, mesh.edge_groups, mesh.node_groups)
 
 
-ELEMENTS = {
+SINGLES = {
     "flat": lambda: patch((1, 1)),
     "distorted": lambda: patch((1, 1), distortion=0.25),
     "curved": lambda: patch((1, 1), distortion=0.2, surface=bowl),
@@ -143,6 +162,8 @@ def free_body(
     material=None,
     coupling=None,
     *,
+    element=QUADRATIC,
+    stretch="linear",
     thickness=THICKNESS,
     remanent=REMANENCE,
     field=FIELD,
@@ -152,24 +173,39 @@ def free_body(
 ):
     """Discretisation of a mesh that only `supports` hold; `remanent` is a vector or one vector per element."""
     vectors = np.broadcast_to(np.asarray(remanent, dtype=float), (len(mesh.elements), 3))
-    shell = Shell(mesh, thickness, material or example(MATERIAL), remanence.per_element(vectors))
+    material, magnets = material or example(MATERIAL), remanence.per_element(vectors)
+    shell = Shell(mesh, thickness, material, magnets, element, stretch)
     body = Unsupported(shell, UniformField(field), coupling or example(COUPLING), tuple(supports), tuple(loads))
     return Discretisation(body, ordering)
+
+
+def rest_and_stretch(d):
+    """Nodes that carry director and micro-rotation, and nodes that carry the thickness stretch."""
+    return np.flatnonzero(d.carried[:, 3]), np.flatnonzero(d.carried[:, 6])
+
+
+def homogeneous(d, F, R):
+    """x = F X, d = F D, micro-rotation R everywhere."""
+    state, (rest, _) = d.undeformed(), rest_and_stretch(d)
+    state.u[:] = d.mesh.points @ (F - np.eye(3)).T
+    state.w[rest] = (d.normals @ (F - np.eye(3)).T)[rest]
+    state.q[rest] = Rotation.from_matrix(R).as_quat(scalar_first=True)
+    return state
 
 
 def random_state(d, seed, strain=0.1, turn=None):
     """A large rotation (vector `turn`, rad; None: at random) and a random strain field of the size `strain` on it."""
     rng = np.random.default_rng(seed)
     turn = Rotation.random(rng=rng) if turn is None else Rotation.from_rotvec(turn)
-    nodes, corners = len(d.mesh.points), d.mesh.corner_nodes
+    nodes, (rest, stretch) = len(d.mesh.points), rest_and_stretch(d)
     F = turn.as_matrix() @ (np.eye(3) + rng.uniform(-strain, strain, (3, 3)))
     state = d.undeformed()
     u = d.mesh.points @ (F - np.eye(3)).T + 0.3 * strain * rng.uniform(-1, 1, (nodes, 3))
     w, phi, q = state.w.copy(), state.phi.copy(), state.q.copy()
-    w[corners] = (d.normals @ (F - np.eye(3)).T + strain * rng.uniform(-1, 1, (nodes, 3)))[corners]
-    phi[corners] = strain * rng.uniform(-1, 1, len(corners)) / d.model.shell.thickness
-    micro = turn * Rotation.from_rotvec(2.0 * strain * rng.uniform(-1, 1, (len(corners), 3)))
-    q[corners] = micro.as_quat(scalar_first=True)
+    w[rest] = (d.normals @ (F - np.eye(3)).T + strain * rng.uniform(-1, 1, (nodes, 3)))[rest]
+    phi[stretch] = strain * rng.uniform(-1, 1, len(stretch)) / d.model.shell.thickness
+    micro = turn * Rotation.from_rotvec(2.0 * strain * rng.uniform(-1, 1, (len(rest), 3)))
+    q[rest] = micro.as_quat(scalar_first=True)
     return State(u, w, phi, q, strain * rng.uniform(-1, 1, state.alpha.shape))
 
 

@@ -126,8 +126,7 @@ def magnetic_work(coupling, f, point):
 # -- the element -----------------------------------------------------------------------------------------------------
 
 NODAL = 80
-"""Variables of an element: u, w, φ, spin of each of its eight nodes (ten each, absent ones unused), then α (2, 3)."""
-SIZE = NODAL + 6
+"""An element's variables: u, w, φ, spin of each of its eight nodes (ten each, absent ones unused), then α (modes, 3)."""
 
 
 def four(parent):
@@ -145,14 +144,43 @@ def eight(parent):
     return np.concatenate([four(parent) - 0.5 * (sides + np.roll(sides, 1)), sides])
 
 
+def eight_complete(parent, coordinates):
+    """The functions that interpolate in the span of 1, ξ, η, ξη, ξ², η², ξ²η + α ξ²η²/2 and ξη² + β ξ²η²/2.
+
+    X = a ξ + b η + c ξη + …, c = α a + β b + what points out of the plane of a and b. A square of the position has
+    2 α β ξη … ξ²η², and of these ξ²η² comes with ξ²η and ξη² in just these proportions.
+    """
+    bottom, right, top, left = coordinates[4:]
+    a, b = 0.5 * (right - left), 0.5 * (top - bottom)
+    c = 0.25 * (coordinates[0] - coordinates[1] + coordinates[2] - coordinates[3])
+    α, β = np.linalg.lstsq(np.column_stack([a, b]), c, rcond=None)[0]
+
+    def span(xi, eta):
+        both = 0.5 * xi**2 * eta**2
+        one = 1.0 + 0.0 * xi
+        return np.array([one, xi, eta, xi * eta, xi**2, eta**2, xi**2 * eta + α * both, xi * eta**2 + β * both])
+
+    ring = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [0, -1], [1, 0], [0, 1], [-1, 0]], dtype=float)
+    return np.linalg.inv(span(*ring.T)) @ span(*parent)
+
+
+def functions(element, nodes, parent, coordinates):
+    """Functions of a field on 4 or 8 nodes."""
+    if nodes == 4:
+        return four(parent)
+    return eight_complete(parent, coordinates) if element.complete else eight(parent)
+
+
 class Surface(NamedTuple):
     """The undeformed element at a parent point: its functions and mid-surface.
 
-    N4, N8 with two derivatives in rows 1 and 2; `director` the functions of the unit director, likewise.
+    Functions of u, of the micro-rotation and of φ with two derivatives in rows 1 and 2; `director` those of the unit
+    director, likewise.
     """
 
-    N4: np.ndarray
-    N8: np.ndarray
+    u: np.ndarray
+    rotation: np.ndarray
+    phi: np.ndarray
     director: np.ndarray
     X: np.ndarray
     A: np.ndarray
@@ -163,18 +191,33 @@ class Surface(NamedTuple):
 
 def surface(d, e, parent):
     """Isoparametric surface; the director is the interpolated normal of unit length."""
-    nodes, at = d.mesh.elements[e], jets.variables(parent)
-    N4, N8 = four(at), eight(at)
-    normals = d.normals[nodes[:4]]
-    mean = N4 @ normals
-    director = N4 / jets.sqrt(mean @ mean)
-    X, D = N8 @ d.mesh.points[nodes], director @ normals
+    element, nodes, at = d.model.shell.element, d.mesh.elements[e], jets.variables(parent)
+    coordinates = d.mesh.points[nodes]
+    u, rest, phi = (
+        functions(element, count, at, coordinates) for count in (8, element.rest_nodes, element.stretch_nodes)
+    )
+    normals = d.normals[nodes[: element.rest_nodes]]
+    mean = rest @ normals
+    director = rest / jets.sqrt(mean @ mean)
+    X, D = u @ coordinates, director @ normals
     rows = lambda a: np.concatenate([jets.value(a)[None], jets.gradient(a).T])  # noqa: E731
     A = jets.gradient(X).T
     return Surface(
-        rows(N4), rows(N8), rows(director), jets.value(X), A, jets.value(D), jets.gradient(D).T,
+        rows(u), rows(rest), rows(phi), rows(director), jets.value(X), A, jets.value(D), jets.gradient(D).T,
         float(np.linalg.norm(np.cross(A[0], A[1]))),
     )  # fmt: skip
+
+
+def enhancements(element, parent):
+    """What each mode's vector is multiplied with in g_1, g_2, g_3 but for the areas: (3, modes).
+
+    A monomial ξ^a η^b less its mean over the square, 1/((a + 1)(b + 1)) where both are even.
+    """
+    columns = np.zeros((3, len(element.modes)))
+    for number, mode in enumerate(element.modes):
+        mean = 1.0 / ((mode.xi + 1) * (mode.eta + 1)) if mode.xi % 2 == mode.eta % 2 == 0 else 0.0
+        columns[mode.column - 1, number] = parent[0] ** mode.xi * parent[1] ** mode.eta - mean
+    return columns
 
 
 def turned(spin, q):
@@ -183,41 +226,51 @@ def turned(spin, q):
     return np.concatenate([[s * q[0] - v @ q[1:]], s * q[1:] + q[0] * v + np.cross(v, q[1:])])
 
 
+def unknowns(d):
+    """Number of an element's variables."""
+    return NODAL + 3 * d.modes
+
+
 def element_parts(d, state, e, parent, at):
     """Parts of x at a parent point, jets of the element's variables, and the surface there."""
-    nodes = d.mesh.elements[e]
-    corners, here, centre = nodes[:4], surface(d, e, parent), surface(d, e, np.zeros(2))
-    nodal, alpha = at[:NODAL].reshape(8, 10), state.alpha[e] + at[NODAL:].reshape(2, 3)
-    u, w, phi = state.u[nodes] + nodal[:, :3], state.w[corners] + nodal[:4, 3:6], state.phi[corners] + nodal[:4, 6]
-    sign = np.where(state.q[corners] @ state.q[corners[0]] < 0.0, -1.0, 1.0)
-    q = np.array([turned(nodal[n, 7:], sign[n] * state.q[corners[n]]) for n in range(4)])
-    w_here, q_here = here.director @ w, here.N4 @ q
+    element, nodes = d.model.shell.element, d.mesh.elements[e]
+    rest, stretch = nodes[: element.rest_nodes], nodes[: element.stretch_nodes]
+    here, centre = surface(d, e, parent), surface(d, e, np.zeros(2))
+    nodal = at[:NODAL].reshape(8, 10)
+    u, w = state.u[nodes] + nodal[:, :3], state.w[rest] + nodal[: len(rest), 3:6]
+    phi = state.phi[stretch] + nodal[: len(stretch), 6]
+    sign = np.where(state.q[rest] @ state.q[rest[0]] < 0.0, -1.0, 1.0)
+    q = np.array([turned(nodal[n, 7:], sign[n] * state.q[rest[n]]) for n in range(len(rest))])
+    w_here, q_here = here.director @ w, here.rotation @ q
+    enhanced = np.zeros((3, 3))
+    if element.modes:
+        ratio, length = centre.area / here.area, np.sqrt(centre.area)
+        alpha = state.alpha[e] + at[NODAL:].reshape(d.modes, 3)
+        enhanced = ratio * np.array([[length], [length], [1.0]]) * enhancements(element, parent) @ alpha
     parts = {
-        "du": here.N8[1:] @ u,
+        "du": here.u[1:] @ u + enhanced[:2],
         "w": w_here[0],
         "dw": w_here[1:],
-        "enhanced": centre.area / here.area * (np.asarray(parent) @ alpha),
-        "phi": here.N4[0] @ phi,
+        "enhanced": enhanced[2],
+        "phi": here.phi[0] @ phi,
         "q": q_here[0],
         "dq": q_here[1:],
     }
     return parts, here
 
 
-RULE = [np.array([xi, eta]) / np.sqrt(3.0) for xi in (-1.0, 1.0) for eta in (-1.0, 1.0)]
-
-
-def point_of(d, here, e, B):
+def point_of(d, here, e, weight, B):
     """The point of a surface; the remanence of the battery's bodies is constant within an element."""
-    return make_point(here.A, here.D, here.dD, 1.0, d.model.shell.thickness, d.body.remanence[e, 0], B)
+    return make_point(here.A, here.D, here.dD, weight, d.model.shell.thickness, d.body.remanence[e, 0], B)
 
 
 def element(d, state, e, B):
-    """Strain energy, residual (86,), tangent (86, 86) before condensation, in the chart exp(ϑ/2) q about the state."""
-    strain, r, K = 0.0, np.zeros(SIZE), np.zeros((SIZE, SIZE))
-    for parent in RULE:
-        f, here = element_parts(d, state, e, parent, jets.variables(np.zeros(SIZE)))
-        point = point_of(d, here, e, B)
+    """Strain energy, residual (n,), tangent (n, n) before condensation, in the chart exp(ϑ/2) q about the state."""
+    size, rule = unknowns(d), d.model.shell.element.rule
+    strain, r, K = 0.0, np.zeros(size), np.zeros((size, size))
+    for parent, weight in zip(*rule, strict=True):
+        f, here = element_parts(d, state, e, parent, jets.variables(np.zeros(size)))
+        point = point_of(d, here, e, weight, B)
         energy, (g, H) = strain_energy(d.model.shell.material, f, point), magnetic_work(d.model.coupling, f, point)
         strain += energy.value
         r += energy.gradient + g
@@ -233,13 +286,13 @@ def condensed(r, K):
 
 
 def stresses(d, state, e, variation):
-    """P (points, levels, 3, 3) and κ (points, 2, 3) of an element, and their derivatives along a variation (86,)."""
-    material = d.model.shell.material
+    """P (points, levels, 3, 3) and κ (points, 2, 3) of an element, and their derivatives along a variation (n,)."""
+    material, rule = d.model.shell.material, d.model.shell.element.rule
     energy = material_reference.ENERGIES[type(material)]
     P, dP, κ, dκ = [], [], [], []
-    for parent in d.body.shape.parent:
-        f, here = element_parts(d, state, e, parent, jets.variables(np.zeros(SIZE)))
-        for F in deformation_gradients(f, point_of(d, here, e, np.zeros(3))):
+    for parent, weight in zip(*rule, strict=True):
+        f, here = element_parts(d, state, e, parent, jets.variables(np.zeros(unknowns(d))))
+        for F in deformation_gradients(f, point_of(d, here, e, weight, np.zeros(3))):
             U = rotation(f["q"]).T @ F
             W = energy(material, jets.variables(jets.value(U)))
             P.append(W.gradient.reshape(3, 3))
@@ -247,5 +300,5 @@ def stresses(d, state, e, variation):
         vectors = wryness_vectors(f)
         κ.append(jets.value(vectors))
         dκ.append(jets.gradient(vectors) @ variation)
-    shape = (len(d.body.shape.parent), -1, 3, 3)
+    shape = (len(rule.weights), -1, 3, 3)
     return np.reshape(P, shape), np.array(κ), np.reshape(dP, shape), np.array(dκ)

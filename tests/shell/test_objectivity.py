@@ -9,10 +9,11 @@ from battery import (
     PATCHES,
     REMANENCE,
     dense,
-    each_material,
-    each_pair,
+    each_combination,
+    each_element,
     free_body,
     random_state,
+    rest_and_stretch,
     scaled_error,
     with_points,
 )
@@ -34,10 +35,10 @@ def rotation_of(angle):
 
 def superposed(d, state, Q, q):
     """The deformed body turned by Q: x → Q x, d → Q d, R̃ → Q R̃, ā → Q ā."""
-    corners = d.mesh.corner_nodes
+    rest, _ = rest_and_stretch(d)
     w, turned = state.w.copy(), state.q.copy()
-    w[corners] = ((d.normals + state.w) @ Q.T - d.normals)[corners]
-    turned[corners] = rotation.product(np.broadcast_to(q, state.q.shape), state.q)[corners]
+    w[rest] = ((d.normals + state.w) @ Q.T - d.normals)[rest]
+    turned[rest] = rotation.product(np.broadcast_to(q, state.q.shape), state.q)[rest]
     return State((d.mesh.points + state.u) @ Q.T - d.mesh.points, w, state.phi, turned, state.alpha @ Q.T)
 
 
@@ -59,12 +60,12 @@ def turned_matrix(K, Q):
 
 
 @each_angle
-@each_pair
-def test_superposed_rotation_of_body_and_field(material, coupling, angle):
+@each_combination
+def test_superposed_rotation_of_body_and_field(element, material, coupling, angle):
     """Energy to 1e-12, residual and tangent to 1e-10 on a curved patch in a random state that is turned already."""
     mesh = PATCHES["curved patch"]()
     Q, q = rotation_of(angle)
-    d, d_turned = (free_body(mesh, material, coupling, field=field) for field in (FIELD, Q @ FIELD))
+    d, d_turned = (free_body(mesh, material, coupling, element=element, field=field) for field in (FIELD, Q @ FIELD))
     state = random_state(d, 11)
     moved = superposed(d, state, Q, q)
     energy, energy_turned = d.element_energy(state).sum(), d_turned.element_energy(moved).sum()
@@ -79,10 +80,10 @@ def test_superposed_rotation_of_body_and_field(material, coupling, angle):
 
 
 @each_angle
-@each_material
-def test_rigid_rotation_alone_strains_nothing(material, angle):
+@each_element
+def test_rigid_rotation_alone_strains_nothing(element, angle):
     """The undeformed curved patch turned: energy and forces vanish beside those of a strain of 1 %."""
-    d = free_body(PATCHES["curved patch"](), material, field=(0.0, 0.0, 0.0))
+    d = free_body(PATCHES["curved patch"](), element=element, field=(0.0, 0.0, 0.0))
     energy = d.element_energy(superposed(d, d.undeformed(), *rotation_of(angle))).sum()
     forces = np.abs(d.assemble(superposed(d, d.undeformed(), *rotation_of(angle)), 1.0).residual).max()
     strained = random_state(d, 12, strain=0.01)
@@ -92,15 +93,14 @@ def test_rigid_rotation_alone_strains_nothing(material, angle):
 
 
 @pytest.mark.parametrize("angle", [120.0, 250.0])
-@each_pair
-def test_whole_problem_turned(material, coupling, angle):
+@each_combination
+def test_whole_problem_turned(element, material, coupling, angle):
     """Mesh, remanence, field and state turned: the same problem seen in another frame."""
     mesh = PATCHES["curved patch"]()
     Q, q = rotation_of(angle)
-    d = free_body(mesh, material, coupling)
-    d_turned = free_body(
-        with_points(mesh, mesh.points @ Q.T), material, coupling, remanent=Q @ REMANENCE, field=Q @ FIELD
-    )
+    d = free_body(mesh, material, coupling, element=element)
+    there = with_points(mesh, mesh.points @ Q.T)
+    d_turned = free_body(there, material, coupling, element=element, remanent=Q @ REMANENCE, field=Q @ FIELD)
     state = random_state(d, 13)
     micro = rotation.product(rotation.product(np.broadcast_to(q, state.q.shape), state.q), rotation.conjugate(q))
     moved = State(state.u @ Q.T, state.w @ Q.T, state.phi, micro, state.alpha @ Q.T)

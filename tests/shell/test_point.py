@@ -1,9 +1,9 @@
-"""The point's gradient and Hessian, all laws, against the energy written from the paper and differentiated by JAX."""
+"""The point's gradient and Hessian, all laws, against the energy written from the paper and differentiated by jets."""
 
 from __future__ import annotations
 
 import numpy as np
-from battery import ELEMENTS, FIELD, each_pair, free_body, scaled_error
+from battery import FIELD, SINGLES, each_pair, free_body, scaled_error
 from scipy.spatial.transform import Rotation
 
 from shell import jets, oracle
@@ -36,16 +36,16 @@ def random_point(d, seed):
 
 def the_point(d, B):
     """Point 0 of element 0 for the oracle, from the discretisation's own mid-surface."""
-    geometry = d.body.geometry
+    geometry, shell = d.body.geometry, d.model.shell
     return oracle.make_point(
-        geometry.A[0, 0], geometry.D[0, 0], geometry.dD[0, 0], d.body.shape.weights[0], d.model.shell.thickness,
+        geometry.A[0, 0], geometry.D[0, 0], geometry.dD[0, 0], shell.element.rule.weights[0], shell.thickness,
         d.body.remanence[0, 0], np.array(B),
     )  # fmt: skip
 
 
 @each_pair
 def test_gradient_and_hessian(material, coupling):
-    d = free_body(ELEMENTS["curved"](), material, coupling)
+    d = free_body(SINGLES["curved"](), material, coupling)
     for seed in range(4):
         x, point = random_point(d, seed), the_point(d, FIELD)
         g_internal, g_magnetic, H = gradient_and_hessian(d, 0, 0, x, FIELD)

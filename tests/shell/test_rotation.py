@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from battery import ELEMENTS, free_body, random_increment, random_state
+from battery import SINGLES, free_body, random_increment, random_state
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from magshell.shell import rotation
+from magshell.shell.elements import PAPER
 
 component = st.floats(-1.0, 1.0)
 axes = st.tuples(component, component, component).map(np.array).filter(lambda v: np.linalg.norm(v) > 1e-3)
@@ -78,7 +79,7 @@ def test_conjugate_is_the_inverse(q):
 
 
 def test_increment_from_inverts_moved():
-    d = free_body(ELEMENTS["curved"]())
+    d = free_body(SINGLES["curved"](), element=PAPER)
     state = random_state(d, 1)
     increment, d_alpha = random_increment(d, 2, size=1.5)
     found, found_alpha = state.moved(increment, d_alpha).increment_from(state)
@@ -87,7 +88,7 @@ def test_increment_from_inverts_moved():
 
 
 def test_moved_inverts_increment_from():
-    d = free_body(ELEMENTS["curved"]())
+    d = free_body(SINGLES["curved"](), element=PAPER)
     state, other = random_state(d, 1), random_state(d, 3)
     reached = state.moved(*other.increment_from(state))
     same = np.where(np.sum(reached.q * other.q, axis=1, keepdims=True) < 0.0, -1.0, 1.0)
@@ -102,7 +103,7 @@ def test_moved_inverts_increment_from():
 
 
 def test_moved_leaves_the_state_itself_alone():
-    d = free_body(ELEMENTS["curved"]())
+    d = free_body(SINGLES["curved"]())
     state = random_state(d, 1)
     before = [part.copy() for part in state]
     state.moved(*random_increment(d, 2))
