@@ -75,7 +75,7 @@ def _describe(motions: FloatArray) -> str:
 
 def _direction(vector: FloatArray) -> str:
     unit = vector / np.linalg.norm(vector)
-    axis = int(np.argmax(np.abs(unit)))
+    axis = int(np.argmax(np.round(np.abs(unit), 9)))
     if abs(unit[axis]) > 1.0 - 1e-9:
         return f"X{axis + 1}"
     unit = np.round(unit * np.sign(unit[axis]), 12) + 0.0

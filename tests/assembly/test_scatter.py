@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from battery import FIELD, PATCHES, dense, free_body, patch, random_increment, random_state, scaled_error
+from battery import FIELD, PATCHES, dense, each_element, free_body, patch, random_increment, random_state, scaled_error
 from shell import oracle
 
 from magshell.linalg import nested_dissection
+from magshell.shell.elements import ELEMENTS
 from magshell.supports import Clamp, Prescribe, SymmetryPlane
 
 SUPPORTS = (
@@ -63,18 +64,23 @@ def expected(d, reference):
     return T @ r, T @ r_condensed, T @ (K + transport) @ T.T
 
 
-@pytest.fixture(scope="module")
-def reference():
-    d = free_body(PATCHES["curved patch"]())
+@pytest.fixture(scope="module", params=ELEMENTS.values(), ids=ELEMENTS)
+def reference(request):
+    d = free_body(PATCHES["curved patch"](), element=request.param)
     state = random_state(d, 31)
     return d, state, assembled(d, state)
+
+
+def supported(body, supports=SUPPORTS, ordering=ORDERINGS["as numbered"]):
+    """The same body with supports."""
+    return free_body(body.mesh, element=body.model.shell.element, supports=supports, ordering=ordering)
 
 
 @pytest.mark.parametrize("ordering", ORDERINGS.values(), ids=ORDERINGS)
 @pytest.mark.parametrize("supports", [(), SUPPORTS], ids=["free", "oblique supports"])
 def test_matrix_and_right_side(reference, supports, ordering):
     body, state, arrays = reference
-    d = free_body(body.mesh, supports=supports, ordering=ordering)
+    d = supported(body, supports, ordering)
     if supports:
         assert (d.model.constraints.frame_of >= 0).any()
     assembly = d.assemble(state, 1.0)
@@ -97,7 +103,7 @@ def test_one_held_rotation_is_among_the_supports():
 
 def test_imposed_increments_go_to_the_right_side(reference):
     body, state, arrays = reference
-    d = free_body(body.mesh, supports=SUPPORTS)
+    d = supported(body)
     (_, r_condensed, K), imposed = expected(d, arrays), d.imposed(0.7)
     assert np.array_equal(imposed, 0.7 * d.model.constraints.value)
     assert np.count_nonzero(imposed) > 10
@@ -109,7 +115,7 @@ def test_imposed_increments_go_to_the_right_side(reference):
 def test_solution_satisfies_the_equations(reference):
     """The increment of free unknowns and imposed values balances K Δv = -r but for reactions."""
     body, state, arrays = reference
-    d = free_body(body.mesh, supports=SUPPORTS)
+    d = supported(body)
     assembly = d.assemble(state, 1.0, imposed=d.imposed(0.1))
     solution = np.linalg.solve(assembly.matrix.toarray(), assembly.right_side)
     local = frames(d) @ d.expand(solution, d.imposed(0.1)).ravel()
@@ -121,9 +127,10 @@ def test_solution_satisfies_the_equations(reference):
     assert held == pytest.approx(d.imposed(0.1)[d.model.constraints.fixed], abs=1e-14)
 
 
-def test_pattern_holds_no_more_than_neighbours():
+@each_element
+def test_pattern_holds_no_more_than_neighbours(element):
     """Two unknowns share an entry if and only if an element has both of their nodes."""
-    d = free_body(patch((3, 2)), supports=(Clamp("left"),), ordering=ORDERINGS["at random"])
+    d = free_body(patch((3, 2)), element=element, supports=(Clamp("left"),), ordering=ORDERINGS["at random"])
     owner = np.empty(d.dofs, dtype=int)
     owner[d.equations.number[d.free]] = np.nonzero(d.free)[0]
     neighbours = np.zeros((len(d.mesh.points),) * 2, dtype=bool)
@@ -136,13 +143,23 @@ def test_pattern_holds_no_more_than_neighbours():
     assert np.array_equal(stored, neighbours[np.ix_(owner, owner)])
 
 
-def test_mid_sides_carry_u_only():
-    d = free_body(patch((3, 2)))
+@each_element
+def test_mid_sides_carry_what_the_element_type_says(element):
+    d = free_body(patch((3, 2)), element=element)
     mid_sides = np.setdiff1d(np.arange(len(d.mesh.points)), d.mesh.corner_nodes)
-    assert d.carried[:, :3].all()
+    rest, stretch = element.rest_nodes == 8, element.stretch_nodes == 8
     assert d.carried[d.mesh.corner_nodes].all()
-    assert not d.carried[mid_sides, 3:].any()
-    assert d.dofs == 3 * len(d.mesh.points) + 7 * len(d.mesh.corner_nodes)
+    assert np.array_equal(d.carried[mid_sides], [[True] * 3 + [rest] * 3 + [stretch] + [rest] * 3] * len(mid_sides))
+    extra = 3 + 6 * rest + stretch
+    assert d.dofs == 10 * len(d.mesh.corner_nodes) + extra * len(mid_sides)
+
+
+def test_a_mid_side_node_of_the_default_type_is_whole_when_all_it_carries_is_free():
+    """What the quick way of scattering needs to know: components that no node of a kind carries are not missed."""
+    d = free_body(patch((3, 2)), supports=(Clamp("left"),))
+    held = np.zeros(len(d.mesh.points), dtype=bool)
+    held[d.mesh.nodes_of("left")] = True
+    assert np.array_equal(d.equations.whole, ~held)
 
 
 def test_frames_there_and_back():

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from battery import COUPLING, MATERIAL, example, patch, with_points
+from battery import COUPLING, MATERIAL, each_element, example, patch, with_points
 from scipy.spatial.transform import Rotation
 
 import magshell as ms
 from magshell.errors import InputError
 from magshell.mesh import rectangle
+from magshell.shell.elements import PAPER, QUADRATIC
 from magshell.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane, resolve
 
 U, W, PHI, OMEGA = slice(0, 3), slice(3, 6), 6, slice(7, 10)
@@ -22,56 +23,65 @@ def mesh():
     return mesh.select_nodes("origin", x1=0, x2=0).select_nodes("far", x1=3, x2=1).select_nodes("middle", x1=0, x2=0.5)
 
 
-def corners_and_mid_sides(mesh, group):
+def carrying(mesh, group, element, field):
+    """Nodes of a group that carry a field: all, or the corners."""
+    count = {"u": 8, "w": element.rest_nodes, "omega": element.rest_nodes, "phi": element.stretch_nodes}[field]
     nodes = mesh.nodes_of(group)
-    return np.intersect1d(nodes, mesh.corner_nodes), np.setdiff1d(nodes, mesh.corner_nodes)
+    return nodes if count == 8 else np.intersect1d(nodes, mesh.corner_nodes)
 
 
-def held(mesh, *supports):
+def constrained(mesh, supports, element=QUADRATIC):
+    return resolve(mesh, supports, element.carriers(mesh.elements, len(mesh.points)))
+
+
+def held(mesh, element, *supports):
     """Held components and their values, no node having a frame of its own."""
-    constraints = resolve(mesh, supports)
+    constraints = constrained(mesh, supports, element)
     assert np.all(constraints.frame_of < 0)
     return constraints.fixed, constraints.value
 
 
-def test_clamp_leaves_the_thickness_free(mesh):
-    fixed, value = held(mesh, Clamp("left"))
-    corners, mid_sides = corners_and_mid_sides(mesh, "left")
+@each_element
+def test_clamp_leaves_the_thickness_free(mesh, element):
+    fixed, value = held(mesh, element, Clamp("left"))
     expected = np.zeros_like(fixed)
-    expected[corners], expected[corners, PHI] = True, False
-    expected[mid_sides, U] = True
+    for field, columns in (("u", U), ("w", W), ("omega", OMEGA)):
+        expected[carrying(mesh, "left", element, field), columns] = True
     assert np.array_equal(fixed, expected)
     assert not value.any()
 
 
 def test_simple_support_holds_u(mesh):
-    fixed, _ = held(mesh, SimpleSupport("left"))
+    fixed, _ = held(mesh, QUADRATIC, SimpleSupport("left"))
     expected = np.zeros_like(fixed)
     expected[mesh.nodes_of("left"), U] = True
     assert np.array_equal(fixed, expected)
 
 
+@each_element
 @pytest.mark.parametrize("axis", range(3))
 @pytest.mark.parametrize("length", [1.0, -3.0])
-def test_symmetry_plane_along_an_axis(mesh, axis, length):
+def test_symmetry_plane_along_an_axis(mesh, axis, length, element):
     """u and w along the normal, rotation across it; no frames are needed."""
-    fixed, _ = held(mesh, SymmetryPlane("left", length * np.eye(3)[axis]))
-    corners, _ = corners_and_mid_sides(mesh, "left")
+    fixed, _ = held(mesh, element, SymmetryPlane("left", length * np.eye(3)[axis]))
+    rest = carrying(mesh, "left", element, "w")
     across = np.delete(np.arange(3), axis)
     expected = np.zeros_like(fixed)
     expected[mesh.nodes_of("left"), axis] = True
-    expected[corners, 3 + axis] = True
-    expected[np.ix_(corners, 7 + across)] = True
+    expected[rest, 3 + axis] = True
+    expected[np.ix_(rest, 7 + across)] = True
     assert np.array_equal(fixed, expected)
 
 
-def test_slanted_symmetry_plane_has_frames_of_its_own(mesh):
+@each_element
+def test_slanted_symmetry_plane_has_frames_of_its_own(mesh, element):
     normal = np.array([1.0, 2.0, -2.0]) / 3.0
-    constraints = resolve(mesh, [SymmetryPlane("left", 5.0 * normal)])
-    corners, mid_sides = corners_and_mid_sides(mesh, "left")
-    assert (constraints.frame_of[corners] >= 0).all()
-    assert np.array_equal(constraints.frame_of[mid_sides] >= 0, [[True, False, False]] * len(mid_sides))
-    for node in corners:
+    constraints = constrained(mesh, [SymmetryPlane("left", 5.0 * normal)], element)
+    rest = carrying(mesh, "left", element, "w")
+    others = np.setdiff1d(mesh.nodes_of("left"), rest)
+    assert (constraints.frame_of[rest] >= 0).all()
+    assert ((constraints.frame_of[others] >= 0) == [True, False, False]).all()
+    for node in rest:
         for field, column, count in ((0, 0, 1), (1, 3, 1), (2, 7, 2)):
             frame = constraints.frames[constraints.frame_of[node, field]]
             assert np.abs(frame @ frame.T - np.eye(3)).max() < 1e-15
@@ -80,6 +90,7 @@ def test_slanted_symmetry_plane_has_frames_of_its_own(mesh):
             assert along == pytest.approx([1.0] if count == 1 else [0.0, 0.0], abs=1e-15)
 
 
+@each_element
 @pytest.mark.parametrize(
     ("support", "columns", "values"),
     [
@@ -93,10 +104,9 @@ def test_slanted_symmetry_plane_has_frames_of_its_own(mesh):
         (Prescribe("left", "omega", value=(0.1, 0.2, 0.3)), [7, 8, 9], [0.1, 0.2, 0.3]),
     ],
 )
-def test_prescribed_values(mesh, support, columns, values):
-    fixed, value = held(mesh, support)
-    corners, mid_sides = corners_and_mid_sides(mesh, "left")
-    nodes = np.union1d(corners, mid_sides) if support.field == "u" else corners
+def test_prescribed_values(mesh, support, columns, values, element):
+    fixed, value = held(mesh, element, support)
+    nodes = carrying(mesh, "left", element, support.field)
     expected, expected_value = np.zeros_like(fixed), np.zeros_like(value)
     expected[np.ix_(nodes, columns)] = True
     expected_value[np.ix_(nodes, columns)] = values
@@ -106,17 +116,17 @@ def test_prescribed_values(mesh, support, columns, values):
 
 def test_supports_that_say_the_same_twice_agree(mesh):
     """A value along a slanted normal that components imply already; a clamp on a plane of symmetry."""
-    both = resolve(mesh, [Prescribe("left", "u", value=(1.0, -1.0, 0.5)), SymmetryPlane("left", (1.0, 1.0, 0.0))])
+    both = constrained(mesh, [Prescribe("left", "u", value=(1.0, -1.0, 0.5)), SymmetryPlane("left", (1.0, 1.0, 0.0))])
     nodes = mesh.nodes_of("left")
     assert both.fixed[nodes][:, U].all()
     assert np.array_equal(both.value[nodes][:, U], np.broadcast_to((1.0, -1.0, 0.5), (len(nodes), 3)))
-    assert resolve(mesh, [Clamp("left"), SymmetryPlane("left", (1.0, 1.0, 0.0))]).fixed[nodes][:, U].all()
+    assert constrained(mesh, [Clamp("left"), SymmetryPlane("left", (1.0, 1.0, 0.0))]).fixed[nodes][:, U].all()
 
 
 def test_slanted_and_straight_conditions_combine(mesh):
     """u · n = 0 and u3 = 0.4: two directions are held, and what they hold is what was asked."""
     normal = np.array([1.0, 1.0, 1.0]) / np.sqrt(3.0)
-    constraints = resolve(mesh, [SymmetryPlane("origin", normal), Prescribe("origin", "u", 3, 0.4)])
+    constraints = constrained(mesh, [SymmetryPlane("origin", normal), Prescribe("origin", "u", 3, 0.4)])
     node = mesh.nodes_of("origin")[0]
     frame, fixed = constraints.frames[constraints.frame_of[node, 0]], constraints.fixed[node, U]
     assert fixed.sum() == 2
@@ -144,7 +154,7 @@ def test_slanted_and_straight_conditions_combine(mesh):
 )
 def test_contradictions_are_named(mesh, supports, message):
     with pytest.raises(InputError, match=message):
-        resolve(mesh, supports)
+        constrained(mesh, supports)
 
 
 @pytest.mark.parametrize(
@@ -163,12 +173,27 @@ def test_contradictions_are_named(mesh, supports, message):
         (SymmetryPlane("left", (1, 0)), "normal is .* needs 3 components"),
         (SymmetryPlane("left", (1, 0, float("inf"))), "normal is .* needs 3 components"),
         (SymmetryPlane("left", "X1"), "support on 'left': normal is .*X1"),
-        (Prescribe("middle", "phi"), r"node \d+ is a mid-side node.* carries only u; 'phi' needs corner nodes"),
+        (Prescribe("middle", "phi"), r"support on 'middle': node \d+ is a mid-side node and does not carry 'phi'"),
     ],
 )
 def test_refused(mesh, support, message):
     with pytest.raises(InputError, match=message):
-        resolve(mesh, [support])
+        constrained(mesh, [support])
+
+
+@pytest.mark.parametrize("field", ["w", "omega"])
+def test_mid_side_nodes_may_be_without_director_and_rotation(mesh, field):
+    assert constrained(mesh, [Prescribe("middle", field)], QUADRATIC).fixed.any()
+    with pytest.raises(InputError, match=rf"node \d+ is a mid-side node and does not carry '{field}'"):
+        constrained(mesh, [Prescribe("middle", field)], PAPER)
+
+
+@pytest.mark.parametrize("stretch", ["none", "plane-stress"])
+def test_a_shell_without_thickness_stretch_has_nothing_to_hold(mesh, stretch):
+    shell = ms.Shell(mesh, 0.2, example(MATERIAL), ms.remanence.constant(REMANENT), thickness_stretch=stretch)
+    assert not shell.carriers["phi"].any()
+    with pytest.raises(InputError, match="support on 'left': no node of this shell carries 'phi'"):
+        ms.Model(shell, [Clamp("left"), Prescribe("left", "phi", value=1.0)], ms.UniformField(FIELD))
 
 
 # -- solutions -------------------------------------------------------------------------------------------------------

@@ -126,7 +126,7 @@ def magnetic_work(coupling, f, point):
 # -- the element -----------------------------------------------------------------------------------------------------
 
 NODAL = 80
-"""An element's variables: u, w, φ, spin of each of its eight nodes (ten each, absent ones unused), then α (modes, 3)."""
+"""An element's variables: u, w, φ, spin of each of its eight nodes (ten each, some unused), then α (modes, 3)."""
 
 
 def four(parent):
