@@ -114,7 +114,7 @@ def reproduce(names: Sequence[str], directory: pathlib.Path, console: Console) -
             else:
                 solved[example.name][outcome.name] = outcome.path
             if len(solved[example.name]) == len(files[example.name]):
-                result.sections[example.name] = _section(example, solved.pop(example.name), directory)
+                result.sections[example.name] = section_of(example, solved.pop(example.name), directory)
                 display.say(f"{example.name}: done ({len(result.sections)} of {len(result.wanted)})")
             result.write()
     return result
@@ -127,8 +127,17 @@ def _record_failure(result: Reproduction, example: Example, reason: str) -> None
     result.failed = list(dict.fromkeys([*result.failed, example.name]))
 
 
-def _section(example: Example, paths: Mapping[str, Path], directory: pathlib.Path) -> Section:
-    """Numbers and figures of a solved example; a figure that this machine cannot draw leaves a remark."""
+def section_of(example: Example, paths: Mapping[str, Path], directory: pathlib.Path) -> Section:
+    """Numbers and figures of an example, the figures written; one that this machine cannot draw leaves a remark.
+
+    Parameters
+    ----------
+    example : Example
+    paths : mapping of str to Path
+        Of all its variants, by name.
+    directory : pathlib.Path
+        For the figures, `EXAMPLE-FIGURE.png`.
+    """
     figures, remarks = [], []
     for name, caption, draw in _figures(example):
         file = directory / f"{example.name}-{name}.png"
