@@ -125,7 +125,7 @@ EXAMPLES = (
         title="Bending of beam-like strips",
         about=(
             "Four cantilever strips, clamped at X1 = 0 and magnetised along their length, bend in a field across "
-            "them. Dots: the experiment of Zhao et al. (2019) on the strip of aspect ratio 20.5."
+            "them. The paper shows their deflections as curves only, beside experiments of Zhao et al. (2019)."
         ),
         problems=("strip-10", "strip-17", "strip-20", "strip-41"),
         fields=(2.0, 5.0, 15.0, 50.0),

@@ -109,14 +109,15 @@ def reproduce(names: Sequence[str], directory: pathlib.Path, console: Console) -
         for outcome in outcomes:
             example = owner[outcome.name]
             if outcome.path is None:
-                display.say(f"{example.name}: failed: {outcome.name}: {outcome.reason}", style="red")
                 _record_failure(result, example, f"{outcome.name}: {outcome.reason}")
-            else:
-                solved[example.name][outcome.name] = outcome.path
+                result.write()
+                display.say(f"{example.name}: failed: {outcome.name}: {outcome.reason}", style="red")
+                continue
+            solved[example.name][outcome.name] = outcome.path
             if len(solved[example.name]) == len(files[example.name]):
                 result.sections[example.name] = section_of(example, solved.pop(example.name), directory)
+                result.write()
                 display.say(f"{example.name}: done ({len(result.sections)} of {len(result.wanted)})")
-            result.write()
     return result
 
 

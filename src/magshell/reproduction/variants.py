@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 Stretch: TypeAlias = Literal["linear", "plane-stress", "none"]
 LARGER = 1.02
 """Ratio of the in-plane dimensions of the hollow cross in its second solve."""
+OTHER_ELEMENT = "gripper, default element"
+"""The gripper with the element that problem files have by themselves."""
 LOCKING = ("strip-10", "strip-20", "strip-41")
 """Strips that are also solved without the thickness stretch."""
 STRETCHES: tuple[Stretch, ...] = ("linear", "plane-stress", "none")
@@ -23,6 +25,8 @@ def variants(example: Example) -> dict[str, ProblemFile]:
     files = {name: paper_file(name) for name in example.problems}
     if example.name == "hollow-cross":
         files["hollow-cross, larger"] = scaled(files["hollow-cross"], LARGER)
+    if example.name == "gripper":
+        files[OTHER_ELEMENT] = read("gripper")[1]
     if example.name == "strips":
         for name in LOCKING:
             for stretch in STRETCHES:
