@@ -1,0 +1,205 @@
+"""The pump: small fields against linear shell theory, the crease, clamp, grading and law, and its steep path."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import magshell as ms
+from accuracy_study.convergence import converged, paper_run, sequence
+from accuracy_study.examples import READINGS, Variant, changed
+from accuracy_study.page import LABEL, LEGEND, TEXT, Findings, dress, figure, number, percent, table
+from accuracy_study.runs import Run, Runs, name_of
+from accuracy_study.tube import Tube
+from magshell.mesh import Mesh
+from magshell.output.style import COLOURS, PALE
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+READING = READINGS["pump"]
+LOW, FINAL = READING.fields
+MU, LAME, THICKNESS, RADIUS, HALF_LENGTH = 135e3, 3250e3, 0.9e-3, 22.918311805233e-3, 60e-3
+REMANENCE, MU0 = 94e-3, 4e-7 * np.pi
+FINE, USUAL = (24, 20), (12, 10)
+SHARP = 0.95
+"""Grading that makes the elements at one end twenty times smaller than the mean."""
+STEEP = (1.0, 10.0, 20.0, 25.0, *(float(field) for field in range(28, 43)), 45.0, 50.0, 60.0)
+LAWS = ("couple", "micro-rotation", "deformation-gradient")
+
+
+@dataclass(frozen=True)
+class Graded(Variant):
+    """The pump with elements that get smaller towards the generators at top and bottom, or towards the clamp.
+
+    Attributes
+    ----------
+    around, along : float
+        g in s + g sin(πs)/π, which moves nodes; the smallest elements are 1 - g of the mean.
+    """
+
+    around: float = 0.0
+    along: float = 0.0
+
+    def model(self) -> ms.Model:
+        """The model on the moved nodes."""
+        plain = super().model()
+        mesh = plain.shell.mesh
+        X1, X2, X3 = mesh.points.T
+        angle = 0.5 * np.pi * _moved(np.arctan2(X3, X1) / (0.5 * np.pi), self.around)
+        along = HALF_LENGTH * _moved(X2 / HALF_LENGTH, self.along)
+        points = np.stack([RADIUS * np.cos(angle), along, RADIUS * np.sin(angle)], axis=1)
+        points[np.abs(points) < 1e-12] = 0.0
+        moved = Mesh(points, mesh.elements, mesh.element_groups, mesh.edge_groups, mesh.node_groups)
+        return replace(plain, shell=replace(plain.shell, mesh=moved))
+
+
+def _moved(s: np.ndarray, grading: float) -> np.ndarray:
+    return s + grading * np.sin(np.pi * s) / np.pi
+
+
+def study(runs: Runs) -> Findings:
+    """Tables of the low field, of what changes the result and of the steep path; pictures of crease and path."""
+    findings = Findings()
+    findings.tables["pump-low"] = _low(runs)
+    findings.tables["pump-changes"] = _changes(runs)
+    findings.tables["pump-steep"], findings.pictures["pump-path"] = _steep(runs)
+    findings.pictures["pump-crease"] = _crease(runs)
+    return findings
+
+
+# -- small field -----------------------------------------------------------------------------------------------------
+
+
+def linear_theory(length: float) -> float:
+    """|u1| at B by linear shell theory at the low field, mm, for a length scale over h."""
+    tube = Tube(RADIUS, HALF_LENGTH, THICKNESS, MU, LAME, MU * (length * THICKNESS) ** 2, REMANENCE * 1e-3 * LOW / MU0)
+    return -1e3 * tube.side()
+
+
+def _low(runs: Runs) -> str:
+    def shell(**keys: float) -> float:
+        return READING.of(runs.of(changed(Variant("pump", FINE, "quadratic", (LOW,)), **keys)), LOW)
+
+    rows = [
+        ("linear theory, no couple stress", linear_theory(0.0)),
+        ("linear theory, $l = h/10$", linear_theory(0.1)),
+        ("default element, limit", converged(runs, "pump", LOW)),
+        ("default element, 24 × 20, $\\eta = 10\\mu$", shell(eta=10.0)),
+        ("default element, 24 × 20, $\\eta = 10\\mu$, $l = h/100$", shell(eta=10.0, length=0.01)),
+        ("paper's element, 24 × 20, the paper's mesh", READING.of(paper_run(runs, "pump"), LOW)),
+        ("paper's element, limit", sequence(runs, "pump", "paper", LOW).limit.value),
+    ]
+    best = converged(runs, "pump", LOW)
+    header = ("Pump at 1 mT", "$\\lvert u_1\\rvert$ at B (mm)", "From the limit (%)")
+    return table(header, [(words, number(value), percent(value, best)) for words, value in rows])
+
+
+# -- what changes it -------------------------------------------------------------------------------------------------
+
+
+def _changes(runs: Runs) -> str:
+    low = Graded("pump", (18, 15), "quadratic", (LOW,))
+    final = Graded("pump", USUAL, "quadratic", READING.fields)
+    kinds: dict[str, dict[str, object]] = {
+        "ends: $\\varphi$ held too": {"ends": "phi held"},
+        "ends: free to turn": {"ends": "simple"},
+        "graded towards the crease, 1:20": {"around": SHARP},
+        "graded towards the clamp, 1:20": {"along": SHARP},
+        "law `micro-rotation`": {"coupling": "micro-rotation"},
+        "law `deformation-gradient`": {"coupling": "deformation-gradient"},
+    }
+    values = READING.of(runs.of(low), LOW), READING.of(runs.of(final), FINAL)
+    rows = [["as it is (mm)", *map(number, values)]]
+    for words, keys in kinds.items():
+        found = (
+            READING.of(runs.of(changed(low, **keys)), LOW),
+            READING.of(runs.of(changed(final, **keys)), FINAL),
+        )
+        rows.append([words, *(f"{percent(new, old)} %" for new, old in zip(found, values, strict=True))])
+    header = ("Pump", f"{LOW:g} mT, {low.divisions[0]} × {low.divisions[1]}")
+    return table((*header, f"{FINAL:g} mT, {USUAL[0]} × {USUAL[1]}"), rows)
+
+
+# -- steep path ------------------------------------------------------------------------------------------------------
+
+
+def _steep(runs: Runs) -> tuple[str, Figure]:
+    every: dict[str, Run] = {
+        f"default {n} × {m}": runs.of(Variant("pump", (n, m), "quadratic", STEEP)) for n, m in ((12, 10), (18, 15))
+    }
+    every["paper's 24 × 20"] = runs.of(Variant("pump", FINE, "paper", STEEP))
+    for law in LAWS[1:]:
+        every[f"default 12 × 10, {law}"] = runs.of(Variant("pump", USUAL, "quadratic", STEEP, coupling=law))
+    new = figure((13.0, 5.4))
+    whole, slopes = new.subplots(1, 2)
+    dress(whole, "field (mT)", r"$|u_1|$ at B (mm)")
+    dress(slopes, "field (mT)", "slope of the path (mm/mT)")
+    rows = []
+    for place, (words, run) in enumerate(every.items()):
+        fields, values = np.array(run.fields), -np.array(run.probes["B"])[:, 0]
+        style = {"color": COLOURS[place], "linewidth": 1.8, "label": words}
+        whole.plot(fields, values, marker="o", markersize=3.5, **style)
+        between, slope = _slopes(run)
+        slopes.plot(between, slope, **style)
+        at = int(np.argmax(slope))
+        end = f"{fields[-1]:.4g}" + (" (stops)" if run.reason else "")
+        rows.append((words, f"{slope[at]:.2f}", f"{between[at]:.1f}", str(len(fields) - 1), str(run.cuts), end))
+    slopes.axvspan(33.0, 36.0, color=PALE, alpha=0.18, linewidth=0)
+    whole.axvspan(33.0, 36.0, color=PALE, alpha=0.18, linewidth=0)
+    whole.legend(**LEGEND)
+    header = ("Pump to 60 mT", "Steepest (mm/mT)", "at (mT)", "Steps", "Cuts", "Last field (mT)")
+    return table(header, rows), new
+
+
+def _slopes(run: Run) -> tuple[np.ndarray, np.ndarray]:
+    """Difference quotients between stops that were hit, and the fields between them, mT."""
+    hit = [field for field in STEEP if field <= max(run.fields) * (1.0 + 1e-9)]
+    values = [0.0, *(READING.of(run, field) for field in hit)]
+    fields = np.array([0.0, *hit])
+    return 0.5 * (fields[1:] + fields[:-1]), np.diff(values) / np.diff(fields)
+
+
+# -- crease ----------------------------------------------------------------------------------------------------------
+
+
+def _profile(runs: Runs, variant: Variant) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Around the middle section at the low field: angle, degrees; micro-rotation and that of the director, mrad."""
+
+    def make() -> list[list[float]]:
+        path = ms.solve(variant.model(), variant.settings)
+        points, state = path.discretisation.mesh.points, path.steps[-1].state
+        nodes = np.flatnonzero((np.abs(points[:, 1]) < 1e-9) & path.model.shell.carriers["w"])
+        angle = np.arctan2(points[nodes, 2], points[nodes, 0])
+        nodes, angle = nodes[np.argsort(angle)], np.sort(angle)
+        micro = 2e3 * state.q[nodes, 2]
+        director = 1e3 * (np.sin(angle) * state.w[nodes, 0] - np.cos(angle) * state.w[nodes, 2])
+        return [np.degrees(angle).tolist(), micro.tolist(), director.tolist()]
+
+    angle, micro, director = runs.store.get(f"profile of {name_of(variant)}", make)
+    return np.array(angle), np.array(micro), np.array(director)
+
+
+def _crease(runs: Runs) -> Figure:
+    kinds = {
+        "paper's element, 24 × 20": Variant("pump", FINE, "paper", (LOW,)),
+        "default, 24 × 20": Variant("pump", FINE, "quadratic", (LOW,)),
+        "default, 36 × 10, graded 1:20": Graded("pump", (36, 10), "quadratic", (LOW,), around=SHARP),
+    }
+    new = figure((13.0, 5.2))
+    panels = new.subplots(1, 2, sharey=True)
+    for axes, title in zip(panels, ("micro-rotation", "director"), strict=True):
+        dress(axes, "angle from the side (degrees); 90 is the top")
+        axes.set_title(f"rotation of the {title} about $X_2$, middle section, {LOW:g} mT", **TEXT)
+        axes.axhline(0.0, color=PALE, linewidth=1.0)
+        axes.set_xlim(0.0, 91.0)
+    for place, (words, variant) in reversed(list(enumerate(kinds.items()))):
+        angle, *rotations = _profile(runs, variant)
+        for axes, rotation in zip(panels, rotations, strict=True):
+            style = {"marker": "so."[place], "markersize": (6, 4, 3)[place], "color": COLOURS[(1, 0, 2)[place]]}
+            axes.plot(angle, rotation, linewidth=1.6, label=words, **style)
+    panels[0].set_ylabel("mrad", **LABEL)
+    panels[1].legend(**LEGEND)
+    return new
