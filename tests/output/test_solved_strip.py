@@ -99,6 +99,7 @@ def test_outputs_of_the_undeformed_strip(results):
 
 
 def test_outputs_of_the_bent_strip_agree_with_each_other(results):
+    """The couple c turns the micro-rotation ahead of the material by c / 4 eta; the coarse mesh may double that."""
     path, _ = results
     discretisation, state = path.discretisation, path.steps[-1].state
     value = {name: output.evaluate(discretisation, state) for name, output in OUTPUTS.items()}
@@ -107,9 +108,10 @@ def test_outputs_of_the_bent_strip_agree_with_each_other(results):
     turned = np.arctan2(-d[0], d[2])
     assert turned > 0.3, "the end turns towards the field"
     angle = -value["rotation"][last, 1].mean()
-    assert angle == pytest.approx(turned, rel=0.02), (angle, turned)
+    ahead = REMANENCE * 10e-3 / (4e-7 * np.pi) * np.cos(turned) / (4 * path.model.shell.material.coupling_modulus)
+    assert 0.0 < angle - turned < 2 * ahead, (angle, turned, ahead)
     b = value["remanence"][-1]
-    assert np.arctan2(b[2], b[0]) == pytest.approx(turned, rel=0.02), (b, turned)
+    assert np.arctan2(b[2], b[0]) == pytest.approx(turned, abs=2 * ahead), (b, turned)
     assert np.linalg.norm(b) == pytest.approx(REMANENCE, rel=0.02), b
     assert value["thickness_ratio"][-1] == pytest.approx(np.linalg.norm(d), rel=0.005), np.linalg.norm(d)
     assert value["energy"].min() > 0

@@ -38,11 +38,18 @@ def strip(
     return Model(shell, held, ms.UniformField(field, stops), coupling, probes={"tip": (LENGTH, 0, 0)})
 
 
-def arm(elements: tuple[int, int] = (6, 2), field: float = 10e-3, stops: Sequence[float] = (), **options: Any) -> Model:
+def arm(
+    elements: tuple[int, int] = (6, 2),
+    field: float = 10e-3,
+    stops: Sequence[float] = (),
+    element: str = "quadratic",
+    stretch: str = "linear",
+    **options: Any,
+) -> Model:
     """A gripper's arm in a coarse mesh: part of a sphere, clamped near the pole, magnetised along its meridians."""
     mesh = ms.mesh.sphere_patch(22.918e-3, polar=(15, 165), azimuth=(-15, 15), elements=elements)
     material = ms.MicropolarNeoHookean(135e3, 3.25e6, 13.5e3, 9e-5)
-    shell = ms.Shell(mesh, 0.9e-3, material, ms.remanence.meridional(94e-3))
+    shell = ms.Shell(mesh, 0.9e-3, material, ms.remanence.meridional(94e-3), element, stretch)
     return Model(shell, [ms.Clamp("top")], ms.UniformField([0, 0, field], stops), **options)
 
 

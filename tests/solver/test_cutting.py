@@ -39,7 +39,7 @@ def test_cuts_on_the_way_change_neither_earlier_states_nor_the_end(model: ms.Mod
     hasty = solve(model, Settings(first_step=0.3, target_iterations=11), [record])
     assert any(at > record.steps[1].load_factor for at, _ in record.cuts), f"no cut on the way: {record.cuts}"
     assert [contents(step.state) for step in hasty.steps] == record.bytes, "a converged state was changed later"
-    careful = solve(model, Settings(first_step=0.01, largest_step=0.1))
+    careful = solve(model, Settings(first_step=0.003, largest_step=0.1))
     assert careful.cuts == 0, f"{careful.cuts} cuts"
     distance, allowed = same_end(hasty, careful)
     assert distance <= allowed, f"ends differ by {distance:.1e} m, allowed {allowed:.1e} m"

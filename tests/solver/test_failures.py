@@ -53,7 +53,7 @@ def test_strip_cannot_be_squashed_to_nothing() -> None:
     supports = [ms.Clamp("left"), ms.Prescribe("right", "u", 1, -LENGTH)]
     error, record = failure(strip(supports=supports, field=(0, 0, 0)), Settings(smallest_step=0.005))
     reached = error.path.steps[-1].load_factor
-    assert 0.3 < reached < 1.0, reached
+    assert 0.1 < reached < 1.0, reached
     assert f"stopped at load factor {reached:.6g}" in error.reason, error.reason
     assert f"after {len(record.cuts)} cuts" in error.reason, error.reason
     assert "Likely causes" in error.reason, error.reason

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from functools import cache
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -18,12 +18,28 @@ from magshell import Settings, UniformField, solve
 from magshell.assembly import Discretisation
 from magshell.linalg import make_solver, nested_dissection
 from magshell.magnetics import laws
+from magshell.shell.elements import ELEMENTS
 from magshell.shell.state import State
 from magshell.solver.newton import Trial, newton
 from solver.models import arm, equation_numbers, strip
 
 BEGIN = 0.2
 SHARP = 1e-13
+
+
+class Case(NamedTuple):
+    """Which arm."""
+
+    coupling: type
+    element: str = "quadratic"
+    stretch: str = "linear"
+
+    @property
+    def model(self) -> ms.Model:
+        return arm(coupling=self.coupling(), element=self.element, stretch=self.stretch)
+
+
+CASES = [*(Case(law) for law in laws()), *(Case(laws()[0], element) for element in ELEMENTS if element != "quadratic")]
 
 
 class Recording(Discretisation):
@@ -37,16 +53,16 @@ class Recording(Discretisation):
 
 
 @cache
-def converged(law: type) -> State:
+def converged(case: Case) -> State:
     """The arm's state at the load factor BEGIN."""
-    model = arm(coupling=law())
-    weaker = ms.Model(model.shell, model.supports, UniformField(BEGIN * model.field.vector), coupling=law())
+    model = case.model
+    weaker = ms.Model(model.shell, model.supports, UniformField(BEGIN * model.field.vector), coupling=model.coupling)
     return solve(weaker, Settings(tolerance=SHARP)).steps[-1].state
 
 
-def errors(law: type, mixed: bool, ε: float) -> np.ndarray:
+def errors(case: Case, mixed: bool, ε: float) -> np.ndarray:
     """Distance of u from the solution before and after each of two iterations, m (root of the sum of squares)."""
-    model, start = arm(coupling=law()), converged(law)
+    model, start = case.model, converged(case)
     discretisation = Recording(model, nested_dissection)
     discretisation.states = []
     trial = Trial(start, discretisation.stresses_at(start), None)
@@ -56,20 +72,21 @@ def errors(law: type, mixed: bool, ε: float) -> np.ndarray:
     return np.array([np.linalg.norm(state.u - solution.u) for state in iterates[:3]])
 
 
-@pytest.mark.parametrize("law", laws(), ids=[law.__name__ for law in laws()])
-def test_mixed_tangent_has_orders_1_2_4(law: type) -> None:
+@pytest.mark.parametrize("case", CASES, ids=[f"{case.element}-{case.coupling.__name__}" for case in CASES])
+def test_mixed_tangent_has_orders_1_2_4(case: Case) -> None:
     sizes = [0.01, 0.005, 0.0025]
-    found = [errors(law, True, size) for size in sizes]
+    found = [errors(case, True, size) for size in sizes]
     for ε, (large, small) in zip(sizes[1:], pairwise(found), strict=True):
         orders = np.log2(large / small)
         # the next term of each expansion is smaller by a factor of the relative size of the increment
         assert orders == pytest.approx([1, 2, 4], abs=2 * ε), f"ε = {ε}: {orders}, errors {small}"
 
 
-def test_plain_tangent_tends_to_the_same_orders() -> None:
+@pytest.mark.parametrize("stretch", ["linear", "none", "plane-stress"])
+def test_plain_tangent_tends_to_the_same_orders(stretch: str) -> None:
     """Its second iteration starts farther out, so fourth order shows for smaller increments only."""
-    law = laws()[0]
-    found = [errors(law, False, ε) for ε in (0.005, 0.0025, 0.00125)]
+    case = Case(laws()[0], stretch=stretch)
+    found = [errors(case, False, ε) for ε in (0.005, 0.0025, 0.00125)]
     first, second = (np.log2(large / small) for large, small in pairwise(found))
     assert second[:2] == pytest.approx([1, 2], abs=0.01), f"{first}, {second}"
     assert first[2] < second[2] < 4.05, f"{first}, {second}"
@@ -77,8 +94,8 @@ def test_plain_tangent_tends_to_the_same_orders() -> None:
 
 
 def test_mixed_tangent_is_farther_ahead_after_two_iterations() -> None:
-    law = laws()[0]
-    mixed, plain = errors(law, True, 0.01)[2], errors(law, False, 0.01)[2]
+    case = Case(laws()[0])
+    mixed, plain = errors(case, True, 0.01)[2], errors(case, False, 0.01)[2]
     assert mixed < 0.1 * plain, f"errors after two iterations: mixed {mixed:.1e} m, plain {plain:.1e} m"
 
 
