@@ -24,6 +24,7 @@ from magshell.output.panels import (
 from magshell.output.style import COLOURS, GREY, INK, TEXT
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from magshell.output.scene import Camera
@@ -37,8 +38,10 @@ ABOVE = 0.06
 """Of an arrow's length, over the face."""
 ROOM = 1.12
 """Around the undeformed body, for letters."""
-LETTER = 0.04
-"""From a point to its letter, of the picture."""
+HEIGHTS = (4.2, 5.6)
+"""Of its figure, inches."""
+LETTER = 17.0
+"""From a point to its letter, printer's points."""
 
 
 def shapes_figure(example: Example, paths: Mapping[str, Path]) -> Figure:
@@ -79,31 +82,45 @@ def undeformed_figure(example: Example, paths: Mapping[str, Path]) -> Figure:
         This machine cannot draw without a screen.
     """
     from matplotlib.figure import Figure
-    from matplotlib.patheffects import withStroke
 
     bodies = example.bodies(paths, lambda path: path.steps[0])
-    figure = Figure(figsize=(7.4, 5.6), dpi=DPI, facecolor="white")
-    place: Place = (0.13, 0.0, 0.87, 1.0)
-    (camera,) = fitted(cameras_for([bodies], *example.view), [aspect(figure, place)])
+    (camera,) = cameras_for([bodies], *example.view)
+    width, room = 7.4, 0.87
+    height = float(np.clip(ROOM * room * width * camera.half_height / camera.half_width, *HEIGHTS))
+    figure = Figure(figsize=(width, height), dpi=DPI, facecolor="white")
+    place: Place = (1.0 - room, 0.0, room, 1.0)
+    (camera,) = fitted([camera], [aspect(figure, place)])
     camera = replace(camera, half_width=ROOM * camera.half_width, half_height=ROOM * camera.half_height)
     arrows = [arrow for body in bodies for arrow in _remanence(example, body)]
     axes = put(figure, place, render(bodies, camera, _pale, pixels(figure, place), arrows, REMANENCE))
     body = bodies[0]
-    (upper,) = faces(body.path, body.step, [0.5])
-    seen = camera.on_picture(body.copies[0].of(upper))
-    for name, node in body.path.model.probe_nodes.items():
-        away = seen[node] - seen.mean(axis=0)
-        axes.plot(*seen[node], "o", markersize=4.5, color=INK)
-        letter = seen[node] + LETTER * away / max(float(np.linalg.norm(away)), 1e-9)
-        axes.text(
-            *letter, name, ha="center", va="center", path_effects=[withStroke(linewidth=3, foreground="white")], **TEXT
-        )
-    axes.set_xlim(0, 1)
-    axes.set_ylim(0, 1)
+    _probes(axes, body, camera, 72.0 / DPI * np.array(pixels(figure, place)))
     field_arrow(figure, 0.07, 0.5, _on_picture(camera, body.path.model.field.vector))
     _key(figure)
     _triad(figure, camera)
     return figure
+
+
+def _probes(axes: Axes, body: Body, camera: Camera, size: FloatArray) -> None:
+    """Dots at the probes with their names, away from the body's middle where that is free; size in points."""
+    from matplotlib.patheffects import withStroke
+
+    (upper,) = faces(body.path, body.step, [0.5])
+    seen = size * camera.on_picture(body.copies[0].of(upper))
+    nodes = body.path.model.probe_nodes
+    taken = [seen[node] for node in nodes.values()]
+    for name, node in nodes.items():
+        away = seen[node] - seen.mean(axis=0)
+        angles = np.arctan2(away[1], away[0]) + np.radians([0.0, 45.0, -45.0, 90.0, -90.0, 135.0, -135.0, 180.0])
+        places = seen[node] + LETTER * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        gaps = [min(float(np.linalg.norm(place - other)) for other in taken) for place in places]
+        letter = next((place for place, gap in zip(places, gaps, strict=True) if gap > 0.9 * LETTER), places[0])
+        taken.append(letter)
+        axes.plot(*(seen[node] / size), "o", markersize=4.5, color=INK)
+        text = axes.annotate(name, tuple(letter / size), ha="center", va="center", **TEXT)
+        text.set_path_effects([withStroke(linewidth=3, foreground="white")])
+    axes.set_xlim(0, 1)
+    axes.set_ylim(0, 1)
 
 
 def _pale(values: FloatArray) -> AnyArray:
