@@ -16,6 +16,7 @@ from magshell.materials.law import strain_energy
 from magshell.model import Model
 from magshell.nodal import COLUMNS, COMPONENTS, width
 from magshell.shell import loops, rotation
+from magshell.shell.bubble import held_energy, hold
 from magshell.shell.element import Layout
 from magshell.shell.evaluation import evaluate
 from magshell.shell.geometry import interpolation, least_shifts, section_geometry, unit_forces
@@ -101,11 +102,12 @@ class Discretisation:
         if not np.all(np.isfinite(remanence)):
             bad = int(np.flatnonzero(~np.isfinite(remanence).all(axis=(1, 2)))[0])
             raise InputError(f"remanence: it is not finite in element {bad}")
-        self.modes = len(element.modes)
+        self.modes = element.vectors
+        held = hold(coordinates, element, thickness, model.shell.material.shear_modulus)
         layout = Layout(8, element.rest_nodes, element.stretch_nodes, shape.rotation.shape[-1], self.modes)
         self.body = loops.Body(
             np.ascontiguousarray(mesh.elements), layout, geometry, shape, remanence,
-            model.shell.thickness_stretch == "plane-stress",
+            model.shell.thickness_stretch == "plane-stress", held,
         )  # fmt: skip
         self._number_equations(ordering)
         material = model.shell.material
@@ -373,7 +375,8 @@ class Discretisation:
         U = np.moveaxis(np.einsum("epyx,epkyz->epkxz", fields.R, fields.F), (-2, -1), (0, 1))
         stretch = (strain_energy(material, U) * geometry.volume).sum(axis=(1, 2))
         wryness = np.einsum("epab,epax,epbx->e", geometry.metric, fields.kappa, fields.kappa)
-        return np.asarray(stretch + 0.5 * material.couple_modulus * wryness)
+        held = held_energy(self.body.hold, state.u[self.mesh.elements], state.alpha)
+        return np.asarray(stretch + 0.5 * material.couple_modulus * wryness + held)
 
     def _volume_mean(self, values: FloatArray) -> FloatArray:
         volume = self.body.geometry.volume

@@ -8,6 +8,7 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.shell.elements import ElementType
+from magshell.shell.shape_functions import bubble
 
 
 class SectionGeometry(NamedTuple):
@@ -52,8 +53,9 @@ class Interpolation(NamedTuple):
     rotation : ndarray, shape (elements, p, 3, nodes)
         Functions of the quaternions.
     enhancement : ndarray, shape (elements, p, 3, modes)
-        What the enhanced modes add to g_1, g_2, g_3: (√A at the centre / √A) f with ∫ f dξ dη = 0, in g_1 and g_2
-        times a length of the element, so that all parameters are numbers.
+        What the element's own parameters add to g_1, g_2, g_3. Enhanced modes: (√A at the centre / √A) f with
+        ∫ f dξ dη = 0; the bubble of u, the last: its derivatives. In g_1 and g_2 times a length of the element, so that
+        all parameters are numbers.
     """
 
     u: FloatArray
@@ -107,10 +109,12 @@ def interpolation(
     rotation = np.concatenate([rest.values[:, :, None], rest.derivatives], axis=2)
     if not micro_rotation:
         rotation = rotation[..., :0]
-    enhancement = np.zeros((*u.values.shape[:2], 3, len(element.modes)))
+    enhancement = np.zeros((*u.values.shape[:2], 3, element.vectors))
+    centre = element.functions(8, np.zeros((1, 2)), node_coordinates)
+    area = _area(centre.derivatives, node_coordinates)
+    if element.bubble:
+        enhancement[:, :, :2, -1] = np.sqrt(area)[..., None] * bubble(parent)[1]
     if element.modes:
-        centre = element.functions(8, np.zeros((1, 2)), node_coordinates)
-        area = _area(centre.derivatives, node_coordinates)
         ratio = area / _area(u.derivatives, node_coordinates)
         for number, mode in enumerate(element.modes):
             f = parent[:, 0] ** mode.xi * parent[:, 1] ** mode.eta

@@ -15,6 +15,7 @@ from magshell.compiled import Kernel, inline
 from magshell.magnetics.law import Coupling
 from magshell.materials.law import Material
 from magshell.nodal import COMPONENTS
+from magshell.shell.bubble import Hold, hold_bubble
 from magshell.shell.element import (
     Layout,
     add_radial_force,
@@ -51,6 +52,8 @@ class Body(NamedTuple):
         T.
     plane_stress : bool
         Whether φ is eliminated at each point.
+    hold : Hold
+        What holds the bubbles of u.
     """
 
     elements: IntArray
@@ -59,6 +62,7 @@ class Body(NamedTuple):
     shape: Interpolation
     remanence: FloatArray
     plane_stress: bool
+    hold: Hold
 
 
 class Stresses(NamedTuple):
@@ -253,7 +257,7 @@ def assemble(
         np.zeros((size, 2)),
     )
     r_sum, factor = np.zeros(size), np.zeros((3 * modes, 3 * modes + nodal + 1))
-    kind_of = equations.local_component
+    vectors, kind_of = np.zeros((4, 3)), equations.local_component
     if tangent:
         out.data[:] = 0.0
         out.condensed[:, :] = 0.0
@@ -289,6 +293,8 @@ def assemble(
                 transpose(GH, HG)
                 contract(shape, e, p, layout, T, HG, scratch, Kt)
                 add_radial_force(shape, e, p, layout, g_mixed, v, radial)
+        if len(body.hold.k):
+            hold_bubble(body.hold, e, layout, v, state.alpha[e, modes - 1], vectors, r[:, 0], Kt)
         for l in range(nodal):
             c = kind_of[l]
             kind = 0 if c < 3 else 1 if c < 6 else 2 if c == 6 else 3

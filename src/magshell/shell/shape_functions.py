@@ -100,14 +100,18 @@ def quadratic_complete(parent: FloatArray, coordinates: FloatArray) -> tuple[Flo
     share = np.linalg.solve(metric, np.einsum("eax,ex->ea", base, twist)[..., None])[..., 0]
     corners, mid_sides = 0.25 * CORNERS[:, ::-1], -0.5 * MID_SIDES[:, ::-1]
     missing = 0.5 * share @ np.vstack([corners, mid_sides]).T
-    xi, eta = parent.T
-    bubble = (1 - xi**2) * (1 - eta**2)
-    d_bubble = np.stack([-2 * xi * (1 - eta**2), -2 * eta * (1 - xi**2)], axis=1)
+    inner, d_inner = bubble(parent)
     values, derivatives, _ = serendipity(parent)
     return (
-        values + bubble[:, None] * missing[:, None],
-        derivatives + d_bubble[:, :, None] * missing[:, None, None],
+        values + inner[:, None] * missing[:, None],
+        derivatives + d_inner[:, :, None] * missing[:, None, None],
     )
+
+
+def bubble(parent: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(1 - ξ²)(1 - η²) at points (n, 2), and its parent derivatives (n, 2)."""
+    xi, eta = parent.T
+    return (1 - xi**2) * (1 - eta**2), np.stack([-2 * xi * (1 - eta**2), -2 * eta * (1 - xi**2)], axis=1)
 
 
 def gauss_legendre(count: int) -> tuple[FloatArray, FloatArray]:

@@ -54,6 +54,9 @@ class ElementType:
     rule : Rule
     modes : tuple of Mode
         Enhanced modes, each with a vector of three parameters.
+    bubble : float
+        If positive, u has a ninth function, the bubble (1 - ξ²)(1 - η²), with parameters of the element, and this is
+        the factor c of what holds it (`magshell.shell.bubble`); 0: none.
     complete : bool
         Whether the 8-node functions hold all quadratic polynomials on straight-sided quadrilaterals
         (`quadratic_complete`) or are the plain serendipity ones.
@@ -64,7 +67,13 @@ class ElementType:
     stretch_nodes: int
     rule: Rule
     modes: tuple[Mode, ...] = ()
+    bubble: float = 0.0
     complete: bool = True
+
+    @property
+    def vectors(self) -> int:
+        """Number of vectors of the element's own parameters."""
+        return len(self.modes) + (self.bubble > 0.0)
 
     def functions(self, nodes: int, parent: FloatArray, coordinates: FloatArray) -> Functions:
         """Functions of a field on 4 or 8 nodes at parent points (p, 2) of elements (e, 8, 3)."""

@@ -1,0 +1,120 @@
+r"""What holds the bubble of u by itself.
+
+Reduced integration does not see one combination of the bubble with ξ² and η², that of 3ξ²η² - ξ² - η²: its derivatives
+vanish at the 2 × 2 points. It is held by an energy of the bubble's vector α (times √A, the amplitude) on the current
+tangents a_α at the element's centre,
+
+    W = ½ k^αβ (α · a_α)(α · a_β) + ½ s α · α,      k^αβ = mu h A A^αβ,   s = c mu h³,
+
+A the element's area, A^αβ the reference metric at the centre. In its plane the combination is as stiff as full
+integration makes it (mu h to five per cent), out of the plane of the order of bending: there a larger stiffness would
+bring back the locking that the bubble removes. W is objective, since α turns with the body, and vanishes with α.
+
+With c_α = α · a_α and T^α = k^αβ c_β:
+
+    gradient   α: T^α a_α + s α,      a_α: T^α α
+    Hessian    α α: k^αβ a_α ⊗ a_β + s I,      α a_β: k^αβ a_α ⊗ α + T^β I,      a_α a_β: k^αβ α ⊗ α.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from magshell.arrays import FloatArray
+from magshell.compiled import inline
+from magshell.shell.element import Layout, place
+from magshell.shell.elements import ElementType
+from magshell.shell.shape_functions import serendipity
+
+
+class Hold(NamedTuple):
+    """What holds the bubbles; no elements where the element type has none.
+
+    Attributes
+    ----------
+    du : ndarray, shape (2, 8)
+        Derivatives of the functions of u at the centre.
+    A : ndarray, shape (elements, 2, 3)
+        Reference tangents there, m.
+    k : ndarray, shape (elements, 2, 2)
+        N/m.
+    s : float
+        N m.
+    """
+
+    du: FloatArray
+    A: FloatArray
+    k: FloatArray
+    s: float
+
+
+def hold(node_coordinates: FloatArray, element: ElementType, thickness: float, shear_modulus: float) -> Hold:
+    """The hold of elements with these nodes (elements, 8, 3)."""
+    du = serendipity(np.zeros((1, 2)))[1][0]
+    A = np.einsum("an,enx->eax", du, node_coordinates)
+    metric = np.einsum("eax,ebx->eab", A, A)
+    area = 4.0 * np.sqrt(np.linalg.det(metric))
+    k = shear_modulus * thickness * area[:, None, None] * np.linalg.inv(metric)
+    count = len(k) if element.bubble else 0
+    return Hold(du, np.ascontiguousarray(A[:count]), k[:count].copy(), element.bubble * shear_modulus * thickness**3)
+
+
+def held_energy(held: Hold, u: FloatArray, alpha: FloatArray) -> FloatArray:
+    """W of each element (elements,), J, from u (elements, 8, 3) and α (elements, modes, 3)."""
+    if not len(held.k):
+        return np.zeros(len(u))
+    c = np.einsum("eax,ex->ea", held.A + np.einsum("an,enx->eax", held.du, u), alpha[:, -1])
+    return np.asarray(0.5 * np.einsum("eab,ea,eb->e", held.k, c, c) + 0.5 * held.s * np.sum(alpha[:, -1] ** 2, axis=1))
+
+
+@inline
+def hold_bubble(
+    held: Hold,
+    e: int,
+    layout: Layout,
+    v: FloatArray,
+    alpha: FloatArray,
+    vectors: FloatArray,
+    r: FloatArray,
+    K: FloatArray,
+) -> None:
+    """Add the gradient of W to r and its Hessian to K, for the element's values v and its vector α (3,)."""
+    a, c, T = vectors[:2], vectors[2], vectors[3]
+    for b in range(2):
+        c[b] = 0.0
+        for i in range(3):
+            s, at = held.A[e, b, i], place(i, 0, layout)
+            for n in range(layout.u):
+                s += held.du[b, n] * v[at + n]
+            a[b, i] = s
+            c[b] += s * alpha[i]
+    for b in range(2):
+        T[b] = held.k[e, b, 0] * c[0] + held.k[e, b, 1] * c[1]
+    last = place(10, 0, layout) + layout.modes - 1
+    for i in range(3):
+        row, at = last + i * layout.modes, place(i, 0, layout)
+        r[row] += T[0] * a[0, i] + T[1] * a[1, i] + held.s * alpha[i]
+        K[row, row] += held.s
+        for n in range(layout.u):
+            d = T[0] * held.du[0, n] + T[1] * held.du[1, n]
+            r[at + n] += d * alpha[i]
+            K[row, at + n] += d
+            K[at + n, row] += d
+        for j in range(3):
+            at_j, h = place(j, 0, layout), 0.0
+            for b in range(2):
+                ka = held.k[e, b, 0] * a[0, i] + held.k[e, b, 1] * a[1, i]
+                h += ka * a[b, j]
+                for n in range(layout.u):
+                    value = ka * held.du[b, n] * alpha[j]
+                    K[row, at_j + n] += value
+                    K[at_j + n, row] += value
+            K[row, last + j * layout.modes] += h
+            product = alpha[i] * alpha[j]
+            for n in range(layout.u):
+                k0 = held.du[0, n] * held.k[e, 0, 0] + held.du[1, n] * held.k[e, 1, 0]
+                k1 = held.du[0, n] * held.k[e, 0, 1] + held.du[1, n] * held.k[e, 1, 1]
+                for m in range(layout.u):
+                    K[at + n, at_j + m] += product * (k0 * held.du[0, m] + k1 * held.du[1, m])
