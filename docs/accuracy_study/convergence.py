@@ -24,7 +24,7 @@ MESHES: dict[str, dict[str, list[Divisions]]] = {
     "strip-17": {"paper": _times((15, 2), 1, 2, 3, 4), "quadratic": _times((10, 1), 1, 2, 3, 4)},
     "strip-20": {"paper": _times((15, 1), 1, 2, 3, 4), "quadratic": _times((10, 1), 1, 2, 3, 4)},
     "strip-41": {"paper": _times((20, 1), 1, 2, 3, 4), "quadratic": _times((10, 1), 1, 2, 3, 4)},
-    "hollow-cross": {"paper": _times((3, 3), 1, 2, 3, 4), "quadratic": _times((2, 2), 2, 3, 4, 5)},
+    "hollow-cross": {"paper": _times((3, 3), 1, 2, 3, 4), "quadratic": _times((1, 1), 3, 4, 5, 6)},
     "thin-cross": {"paper": _times((1, 1), 2, 3, 4, 6), "quadratic": _times((1, 1), 1, 2, 3, 4)},
     "h-shape": {"paper": _times((1, 1), 1, 2, 3, 4), "quadratic": _times((1, 1), 1, 2, 3, 4)},
     "pump": {"paper": _times((12, 10), 1, 2, 3, 4), "quadratic": _times((6, 5), 1, 2, 3, 4)},

@@ -77,8 +77,8 @@ class Strip:
 
     @property
     def settings(self) -> ms.Settings:
-        """The default."""
-        return ms.Settings()
+        """With a tolerance above round-off: next to nothing pulls in the plane, and residuals are relative to that."""
+        return ms.Settings(tolerance=1e-5)
 
     def model(self) -> ms.Model:
         """The model."""
