@@ -208,16 +208,42 @@ def surface(d, e, parent):
     )  # fmt: skip
 
 
-def enhancements(element, parent):
-    """What each mode's vector is multiplied with in g_1, g_2, g_3 but for the areas: (3, modes).
+def enhancements(element, parent, here, centre):
+    """What each of the element's own vectors is multiplied with in g_1, g_2, g_3: (3, modes).
 
-    A monomial ξ^a η^b less its mean over the square, 1/((a + 1)(b + 1)) where both are even.
+    F gains α ⊗ A^column of the centre, times a monomial ξ^a η^b less its mean over the square, which is
+    1/((a + 1)(b + 1)) where both are even, times a ratio of areas. The bubble is a part of u.
     """
-    columns = np.zeros((3, len(element.modes)))
+    columns, length = np.zeros((3, element.vectors)), np.sqrt(centre.area)
+    dual = np.linalg.pinv(centre.A).T
     for number, mode in enumerate(element.modes):
         mean = 1.0 / ((mode.xi + 1) * (mode.eta + 1)) if mode.xi % 2 == mode.eta % 2 == 0 else 0.0
-        columns[mode.column - 1, number] = parent[0] ** mode.xi * parent[1] ** mode.eta - mean
+        f = centre.area / here.area * (parent[0] ** mode.xi * parent[1] ** mode.eta - mean)
+        if mode.column == 3:
+            columns[2, number] = f
+        else:
+            columns[:2, number] = length * f * here.A @ dual[mode.column - 1]
+    if element.bubble:
+        at = jets.variables(parent)
+        columns[:2, -1] = length * ((1 - at[0] ** 2) * (1 - at[1] ** 2)).gradient
     return columns
+
+
+def bubble_energy(d, state, e, at):
+    """What holds the bubble: its vector α on the current tangents of the element's centre, and by itself.
+
+    mu h A/2 A^αβ (α·a_α)(α·a_β) + c mu h³/2 α·α with the area A of the parallelogram over the centre's tangents. In the
+    dual base of the centre the first is mu h A/2 |A^α (α·a_α)|².
+    """
+    shell, nodes = d.model.shell, d.mesh.elements[e]
+    mu, h = shell.material.shear_modulus, shell.thickness
+    tangents = lambda x: 0.5 * np.array([x[5] - x[7], x[6] - x[4]])  # noqa: E731
+    A = tangents(d.mesh.points[nodes])
+    a = tangents(d.mesh.points[nodes] + state.u[nodes] + at[:NODAL].reshape(8, 10)[:, :3])
+    alpha = state.alpha[e, -1] + at[-3:]
+    held = np.linalg.pinv(A) @ (a @ alpha)
+    area = 4.0 * np.linalg.norm(np.cross(*A))
+    return 0.5 * mu * h * area * held @ held + 0.5 * shell.element.bubble * mu * h**3 * alpha @ alpha
 
 
 def turned(spin, q):
@@ -243,10 +269,8 @@ def element_parts(d, state, e, parent, at):
     q = np.array([turned(nodal[n, 7:], sign[n] * state.q[rest[n]]) for n in range(len(rest))])
     w_here, q_here = here.director @ w, here.rotation @ q
     enhanced = np.zeros((3, 3))
-    if element.modes:
-        ratio, length = centre.area / here.area, np.sqrt(centre.area)
-        alpha = state.alpha[e] + at[NODAL:].reshape(d.modes, 3)
-        enhanced = ratio * np.array([[length], [length], [1.0]]) * enhancements(element, parent) @ alpha
+    if d.modes:
+        enhanced = enhancements(element, parent, here, centre) @ (state.alpha[e] + at[NODAL:].reshape(d.modes, 3))
     parts = {
         "du": here.u[1:] @ u + enhanced[:2],
         "w": w_here[0],
@@ -275,6 +299,9 @@ def element(d, state, e, B):
         strain += energy.value
         r += energy.gradient + g
         K += energy.hessian + H
+    if d.model.shell.element.bubble:
+        held = bubble_energy(d, state, e, jets.variables(np.zeros(size)))
+        strain, r, K = strain + held.value, r + held.gradient, K + held.hessian
     return strain, r, K
 
 

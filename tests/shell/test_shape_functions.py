@@ -4,11 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from battery import PATCHES, SINGLES, each_element, each_mesh, free_body
+from battery import PATCHES, SINGLES, each_element, each_mesh, flat, free_body
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
-from magshell.shell.shape_functions import CORNERS, NODES, bilinear, gauss_legendre, serendipity
+from magshell.shell.shape_functions import (
+    CORNERS,
+    NODES,
+    bilinear,
+    gauss_legendre,
+    quadratic_complete,
+    serendipity,
+)
 from shell import jets, oracle
 
 coordinates = st.floats(-1.0, 1.0)
@@ -72,13 +80,60 @@ def test_quadrature_is_exact_to_its_degree(count):
 @each_element
 @each_mesh(SINGLES | PATCHES)
 def test_enhanced_modes_integrate_to_zero(mesh, element):
-    """Over the mid-surface of every element, with the surface's own area element."""
+    """What a mode adds to F on flat elements, to g_3 on any: over the surface of every element, with its own area."""
     d = free_body(mesh, element=element)
-    area = np.linalg.norm(np.cross(d.body.geometry.A[:, :, 0], d.body.geometry.A[:, :, 1]), axis=-1)
-    modes = d.body.shape.enhancement
-    assert modes.shape[2:] == (3, len(element.modes))
-    integral = np.einsum("p,ep,epam->eam", element.rule.weights, area, modes)
-    size = np.einsum("p,ep,epam->eam", element.rule.weights, area, np.abs(modes)).sum(axis=1, keepdims=True)
-    worst = (np.abs(integral) / size).max(initial=0.0)
-    assert worst < 1e-15 * 4, f"{worst:.1e} of the integral of the magnitude"
-    assert (size > 0.01).all(), f"a mode that vanishes at every point cannot be eliminated: {size}"
+    assert d.body.shape.enhancement.shape[2:] == (3, element.vectors)
+    modes, geometry = d.body.shape.enhancement[..., : len(element.modes)], d.body.geometry
+    area = np.linalg.norm(np.cross(geometry.A[:, :, 0], geometry.A[:, :, 1]), axis=-1) * element.rule.weights
+    parts = [modes[:, :, 2]]
+    if np.ptp(mesh.points[:, 2]) == 0.0:
+        base = np.concatenate([geometry.A, geometry.D[:, :, None]], axis=2)
+        F = np.einsum("epam,epxa->epmx", modes, np.linalg.inv(base))
+        parts += [F[..., x] for x in range(3)]
+    for part in parts:
+        integral, size = np.einsum("ep,epm->em", area, part), np.einsum("ep,epm->em", area, np.abs(part))
+        worst = (np.abs(integral) / np.maximum(size, 0.1)).max(initial=0.0)
+        assert worst < 1e-15 * 8, f"{worst:.1e} of the integral of the magnitude"
+    assert (np.abs(modes).max(axis=(1, 2)) > 0.01).all(), "a mode that no point sees cannot be eliminated"
+
+
+# -- complete functions ----------------------------------------------------------------------------------------------
+
+SQUARE = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * 1.0
+shifts = st.lists(st.floats(-0.45, 0.45), min_size=8, max_size=8).map(lambda values: np.reshape(values, (4, 2)))
+coefficients = st.lists(st.floats(-1.0, 1.0), min_size=6, max_size=6).map(np.array)
+turns = st.tuples(*[st.floats(-3.0, 3.0)] * 3).map(np.array)
+
+
+@settings(max_examples=200, deadline=None)
+@given(shift=shifts, coefficient=coefficients, turn=turns, xi=coordinates, eta=coordinates)
+def test_complete_functions_hold_every_quadratic_polynomial(shift, coefficient, turn, xi, eta):
+    """On any convex quadrilateral with straight sides (corners within 0.45 of a square's), turned anyhow in space."""
+    Q = Rotation.from_rotvec(turn).as_matrix()
+    corners = SQUARE + shift
+    plane = np.vstack([corners, 0.5 * (corners + np.roll(corners, -1, axis=0))])
+    at = bilinear(np.array([[xi, eta]]))[0] @ corners
+
+    def polynomial(x):
+        return np.stack([np.ones(len(x)), *x.T, *(x.T**2), x[:, 0] * x[:, 1]], axis=1) @ coefficient
+
+    values, derivatives = quadratic_complete(np.array([[xi, eta]]), (flat(plane) @ Q.T)[None])
+    error = abs(values[0, 0] @ polynomial(plane) - polynomial(at)[0])
+    assert error < 1e-12, f"{error:.1e}"
+    expected = oracle.eight_complete(jets.variables([xi, eta]), flat(plane) @ Q.T)
+    errors = (
+        np.abs(values[0, 0] - jets.value(expected)).max(),
+        np.abs(derivatives[0, 0].T - jets.gradient(expected)).max(),
+    )
+    assert max(errors) < 1e-12, f"values and derivatives, against another form: {errors}"
+    assert abs(values.sum() - 1.0) < 1e-13
+    assert np.abs(derivatives.sum(axis=-1)).max() < 1e-13
+
+
+def test_plain_functions_do_not():
+    """By as much as the distortion: this is what the complete ones add."""
+    corners = SQUARE + [[0.0, 0.0], [0.0, 0.0], [0.4, 0.3], [0.0, 0.0]]
+    plane = np.vstack([corners, 0.5 * (corners + np.roll(corners, -1, axis=0))])
+    at = np.array([[0.0, 0.0]])
+    error = abs(serendipity(at)[0][0] @ plane[:, 0] ** 2 - (bilinear(at)[0] @ corners)[0, 0] ** 2)
+    assert error == pytest.approx(0.1**2, rel=1e-12), f"{error:.3g}: ¼ of the twist of X1, 0.4, squared"

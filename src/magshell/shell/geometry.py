@@ -54,8 +54,9 @@ class Interpolation(NamedTuple):
         Functions of the quaternions.
     enhancement : ndarray, shape (elements, p, 3, modes)
         What the element's own parameters add to g_1, g_2, g_3. Enhanced modes: (√A at the centre / √A) f with
-        ∫ f dξ dη = 0; the bubble of u, the last: its derivatives. In g_1 and g_2 times a length of the element, so that
-        all parameters are numbers.
+        ∫ f dξ dη = 0, on D or on a dual base vector of the centre, so that constant stress does no work on them; the
+        bubble of u, the last: its derivatives. In g_1 and g_2 times a length of the element, so that all parameters are
+        numbers.
     """
 
     u: FloatArray
@@ -116,11 +117,19 @@ def interpolation(
         enhancement[:, :, :2, -1] = np.sqrt(area)[..., None] * bubble(parent)[1]
     if element.modes:
         ratio = area / _area(u.derivatives, node_coordinates)
+        A = np.einsum("epan,enx->epax", u.derivatives, node_coordinates)
+        A_0 = np.einsum("eian,enx->eiax", centre.derivatives, node_coordinates)
+        dual = np.linalg.solve(A_0 @ np.swapaxes(A_0, -1, -2), A_0)
+        leg = np.einsum("eigx,epax->epga", dual, A)
         for number, mode in enumerate(element.modes):
             f = parent[:, 0] ** mode.xi * parent[:, 1] ** mode.eta
             mean = element.rule.weights @ f / element.rule.weights.sum()
-            length = np.sqrt(area) if mode.column < 3 else 1.0
-            enhancement[:, :, mode.column - 1, number] = length * ratio * (f - mean)
+            if mode.column == 3:
+                enhancement[:, :, 2, number] = ratio * (f - mean)
+            else:
+                enhancement[:, :, :2, number] = (np.sqrt(area) * ratio * (f - mean))[..., None] * leg[
+                    :, :, mode.column - 1
+                ]
     return Interpolation(*(np.ascontiguousarray(a) for a in (u.derivatives, director, φ.values, rotation, enhancement)))
 
 

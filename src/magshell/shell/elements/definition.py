@@ -24,7 +24,10 @@ def gauss(count: int) -> Rule:
 
 
 class Mode(NamedTuple):
-    """An enhanced mode: g_column gains α ξ^xi η^eta, less what makes its integral vanish; column is 1, 2 or 3."""
+    """An enhanced mode: F gains α ⊗ A^column ξ^xi η^eta, less what makes its integral vanish; column is 1, 2 or 3.
+
+    A^1 and A^2 are those of the element's centre, A^3 is D.
+    """
 
     column: int
     xi: int
