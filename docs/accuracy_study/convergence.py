@@ -20,17 +20,20 @@ def _times(one: Divisions, *factors: int) -> list[Divisions]:
 
 
 MESHES: dict[str, dict[str, list[Divisions]]] = {
-    "strip-10": {"paper": _times((5, 1), 1, 2, 3, 4), "quadratic": _times((5, 1), 1, 2, 3, 4)},
-    "strip-17": {"paper": _times((15, 2), 1, 2, 3, 4), "quadratic": _times((10, 1), 1, 2, 3, 4)},
-    "strip-20": {"paper": _times((15, 1), 1, 2, 3, 4), "quadratic": _times((10, 1), 1, 2, 3, 4)},
-    "strip-41": {"paper": _times((20, 1), 1, 2, 3, 4), "quadratic": _times((10, 1), 1, 2, 3, 4)},
+    "strip-10": {"paper": _times((5, 2), 1, 2, 3, 4), "quadratic": _times((5, 2), 1, 2, 3, 4)},
+    "strip-17": {"paper": _times((15, 2), 1, 2, 3, 4), "quadratic": _times((5, 2), 1, 2, 3, 4)},
+    "strip-20": {"paper": _times((15, 2), 1, 2, 3, 4), "quadratic": _times((5, 2), 1, 2, 3, 4)},
+    "strip-41": {"paper": _times((20, 2), 1, 2, 3, 4), "quadratic": _times((8, 2), 1, 2, 3, 4)},
     "hollow-cross": {"paper": _times((3, 3), 1, 2, 3, 4), "quadratic": _times((1, 1), 3, 4, 5, 6)},
     "thin-cross": {"paper": _times((1, 1), 2, 3, 4, 6), "quadratic": _times((1, 1), 1, 2, 3, 4)},
     "h-shape": {"paper": _times((1, 1), 1, 2, 3, 4), "quadratic": _times((1, 1), 1, 2, 3, 4)},
     "pump": {"paper": _times((12, 10), 1, 2, 3, 4), "quadratic": _times((6, 5), 1, 2, 3, 4)},
     "gripper": {"paper": _times((10, 2), 2, 3, 4, 6), "quadratic": _times((10, 2), 1, 2, 3, 4)},
 }
-"""Divisions, coarse to fine; of the crosses and the H those of the centre or of each block."""
+"""Divisions, coarse to fine; of the crosses and the H those of the centre or of each block.
+
+The probes of strips and gripper lie on the middle line, which is a line of elements' edges on each of these meshes.
+"""
 
 ELEMENTS = ("paper", "quadratic")
 NAMES = {"paper": "paper", "quadratic": "default"}
@@ -48,7 +51,7 @@ class Sequence(NamedTuple):
 def sequence(runs: Runs, example: str, element: str, field: float) -> Sequence:
     """Values and limit; sizes are in units of the paper's mesh."""
     reading, every = READINGS[example], mesh_runs(runs, example, element)
-    paper = len_of(runs, example)
+    paper = elements_of(runs, example)
     sizes = [math.sqrt(paper / run.elements) for run in every]
     values = [reading.of(run, field) for run in every]
     return Sequence(values, sizes, [run.unknowns for run in every], limit(sizes, values))
@@ -67,7 +70,7 @@ def paper_run(runs: Runs, example: str, element: str = "paper") -> Run:
     return runs.of(Variant(example, paper_divisions(example), element, READINGS[example].fields))
 
 
-def len_of(runs: Runs, example: str) -> int:
+def elements_of(runs: Runs, example: str) -> int:
     """Number of elements of the paper's mesh."""
     return paper_run(runs, example).elements
 
