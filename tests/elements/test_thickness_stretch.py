@@ -1,0 +1,70 @@
+"""The stretch that varies across the thickness: a field, absent, or eliminated at every point."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+import magshell as ms
+from magshell import problem
+from magshell.problem.building import build
+from magshell.shell.evaluation import evaluate
+
+
+@cache
+def strip(element: str, stretch: str, divide: int = 1) -> ms.Path:
+    """The problem strip-10 in 2 mT."""
+    source, file = problem.read("strip-10")
+    along, across = file.mesh.elements
+    changes = {
+        "mesh": file.mesh.model_copy(update={"elements": (along * divide, across * divide)}),
+        "shell": file.shell.model_copy(update={"element": element, "thickness_stretch": stretch}),
+    }
+    model = build(file.model_copy(update=changes), source).model
+    return ms.solve(ms.Model(model.shell, model.supports, ms.UniformField((0, 0, 2e-3)), model.coupling, model.probes))
+
+
+def tip(*arguments: object) -> float:
+    """Deflection of the tip, m."""
+    return float(strip(*arguments).probe("tip").u3[-1])
+
+
+def test_without_it_bending_locks() -> None:
+    """By 38 %, as an independent program of the source's element has it."""
+    less = tip("paper", "none") / tip("paper", "linear") - 1.0
+    assert less == pytest.approx(-0.38, abs=0.005), f"{less:.1%}"
+
+
+def test_locking_is_not_one_of_the_mesh() -> None:
+    """It is the theory that is too stiff: a better element and a finer mesh do not help."""
+    less = [tip("quadratic", "none", divide) / tip("quadratic", "linear", divide) - 1.0 for divide in (1, 2)]
+    assert max(less) < -0.38, f"{less}"
+    assert less[0] == pytest.approx(less[1], abs=0.01), f"{less}"
+
+
+def test_plane_stress_at_the_points_is_the_field_on_a_fine_mesh() -> None:
+    """They differ by how φ varies in between: by no more than the mesh's own error."""
+    linear, points = (np.array([tip("quadratic", stretch, divide) for divide in (1, 2)]) for stretch in TWO)
+    mesh = np.abs(np.diff(linear)) + np.abs(np.diff(points))
+    assert abs(linear[1] - points[1]) < mesh, f"{linear}, {points}"
+    assert abs(points[1] / linear[1] - 1.0) < 5e-4, f"{points[1] / linear[1] - 1.0:.1e}"
+
+
+TWO = ("linear", "plane-stress")
+
+
+@pytest.mark.parametrize("stretch", ["none", "plane-stress"])
+def test_no_node_carries_it(stretch: str) -> None:
+    path = strip("quadratic", stretch)
+    assert not path.discretisation.carried[:, 6].any()
+    assert not path.steps[-1].state.phi.any()
+    assert path.discretisation.dofs < strip("quadratic", "linear").discretisation.dofs
+
+
+@pytest.mark.parametrize("stretch", ["none", *TWO])
+def test_balance(stretch: str) -> None:
+    step = strip("quadratic", stretch).steps[-1]
+    assert max(step.balance.force_imbalance, step.balance.moment_imbalance) < 1e-8, step.balance
+    assert np.linalg.det(evaluate(strip("quadratic", stretch).discretisation.body, step.state).F).min() > 0.9
