@@ -248,6 +248,22 @@ class Discretisation:
             matrix = self._matrix
         return Assembly(matrix, right_side, out.residual.copy(), self._relative_residual(load_factor))
 
+    def load_direction(
+        self, state: State, load_factor: float, stresses: loops.Stresses | None, residual: FloatArray
+    ) -> FloatArray:
+        """Right side (dofs,) of the tangent for the increment of the unknowns per load factor.
+
+        Field and loads are linear in the load factor. `residual` is that of the state.
+        """
+        ahead = self.assemble(state, load_factor + 1.0, tangent=False).residual
+        right_side = np.zeros(self.dofs)
+        right_side[self._free_index] = (residual - ahead)[self.free]
+        imposed = self.imposed(1.0)
+        if np.any(imposed):
+            held = self.assemble(state, load_factor, stresses).right_side
+            right_side += self.assemble(state, load_factor, stresses, imposed).right_side - held
+        return right_side
+
     def _add_loads(self, load_factor: float, tangent: bool) -> None:
         """Take the loads, which are dead, off the residual, and the transport of their couples off the tangent."""
         out, loads = self._out, load_factor * self._loads

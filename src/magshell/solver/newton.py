@@ -1,4 +1,4 @@
-"""Newton's method for one load factor, with the mixed-integration-point tangent.
+"""Newton's method for one step, with the mixed-integration-point tangent.
 
 The geometric part of the tangent is made with the stresses that the last iteration predicted linearly,
 S' = S + C ΔU, in place of those of the new state (Magisano, Leonetti and Garcea, Comput. Methods Appl. Mech. Engrg.
@@ -18,6 +18,7 @@ from magshell.assembly import Assembly, Discretisation, InvertedElement
 from magshell.linalg import LinearSolver, SingularMatrix
 from magshell.shell.loops import Stresses
 from magshell.shell.state import State
+from magshell.solver.arc import NoRoot, Sphere
 from magshell.solver.settings import Settings
 
 HALVINGS = 4
@@ -33,15 +34,17 @@ class Solution(NamedTuple):
     """A converged state: its assembly, linear solves spent, history of worst relative residuals."""
 
     state: State
+    load_factor: float
     assembly: Assembly
     solves: int
     residuals: list[float]
 
 
 class Trial(NamedTuple):
-    """Where an iteration starts: state, stresses of the geometric part, and increments still to be imposed."""
+    """Where an iteration is: state, load factor, stresses of the geometric part, increments still to be imposed."""
 
     state: State
+    load_factor: float
     stresses: Stresses
     imposed: FloatArray | None
 
@@ -50,28 +53,27 @@ def newton(
     discretisation: Discretisation,
     linear_solver: LinearSolver,
     trial: Trial,
-    load_factor: float,
+    sphere: Sphere | None,
     settings: Settings,
     report: Callable[[int, str, float], None],
 ) -> Solution:
-    """Solve for equilibrium at a load factor.
+    """Solve for equilibrium at the trial's load factor or, with a sphere, on it at a load factor that is found.
 
     Raises
     ------
     StepFailure
         No convergence, an inverted element, a singular tangent.
     """
-    state, imposed = trial.state, trial.imposed
     residuals: list[float] = []
-    assembly = _assemble(discretisation, trial, load_factor, settings)
+    assembly = _assemble(discretisation, trial, settings)
     while True:
         kind, residual = assembly.worst
         residuals.append(residual)
         report(len(residuals) - 1, kind, residual)
         if not np.isfinite(residual):
             raise StepFailure("the residual is not finite")
-        if residual <= settings.tolerance and imposed is None:
-            return Solution(state, assembly, len(residuals) - 1, residuals)
+        if residual <= settings.tolerance and trial.imposed is None:
+            return Solution(trial.state, trial.load_factor, assembly, len(residuals) - 1, residuals)
         if len(residuals) > settings.max_iterations:
             raise StepFailure(
                 f"no convergence in {settings.max_iterations} iterations (residual of {kind}: {residual:.1e})"
@@ -84,29 +86,40 @@ def newton(
         except SingularMatrix as singular:
             direction = discretisation.expand(singular.null_vector)
             raise StepFailure(_free_direction(discretisation, direction)) from None
-        increment = discretisation.expand(linear_solver.solve(assembly.right_side), imposed)
+        increment = discretisation.expand(linear_solver.solve(assembly.right_side), trial.imposed)
+        d_load = 0.0
+        if sphere is not None:
+            stresses = trial.stresses if settings.mixed_tangent else None
+            direction = discretisation.load_direction(trial.state, trial.load_factor, stresses, assembly.residual)
+            per_load = discretisation.expand(linear_solver.solve(direction), discretisation.imposed(1.0))
+            try:
+                d_load = sphere.d_load(trial.state, trial.load_factor, increment, per_load)
+            except NoRoot:
+                raise StepFailure("the increment misses the arc length") from None
+            increment = increment + d_load * per_load
         if _size(discretisation, increment).max() > ABSURD:
             raise StepFailure(_free_direction(discretisation, increment))
         d_alpha = discretisation.recover(increment)
+        start = trial
         for halving in range(HALVINGS + 1):
             size = 0.5**halving
             trial = Trial(
-                state.moved(size * increment, size * d_alpha),
-                discretisation.predicted_stresses(state, size * increment, size * d_alpha),
-                None if imposed is None or halving == 0 else (1.0 - size) * imposed,
+                start.state.moved(size * increment, size * d_alpha),
+                start.load_factor + size * d_load,
+                discretisation.predicted_stresses(start.state, size * increment, size * d_alpha),
+                None if start.imposed is None or halving == 0 else (1.0 - size) * start.imposed,
             )
             try:
-                assembly = _assemble(discretisation, trial, load_factor, settings)
+                assembly = _assemble(discretisation, trial, settings)
                 break
             except InvertedElement as inverted:
                 if halving == HALVINGS:
                     raise StepFailure(_inverted(inverted)) from None
-        state, imposed = trial.state, trial.imposed
 
 
-def _assemble(discretisation: Discretisation, trial: Trial, load_factor: float, settings: Settings) -> Assembly:
+def _assemble(discretisation: Discretisation, trial: Trial, settings: Settings) -> Assembly:
     stresses = trial.stresses if settings.mixed_tangent else None
-    return discretisation.assemble(trial.state, load_factor, stresses, trial.imposed)
+    return discretisation.assemble(trial.state, trial.load_factor, stresses, trial.imposed)
 
 
 def _inverted(inverted: InvertedElement) -> str:

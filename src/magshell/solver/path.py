@@ -32,6 +32,8 @@ class Step(NamedTuple):
         Relative, of the worst kind of unknown.
     balance : Balance or None
         Global equilibrium; None for the undeformed state.
+    arc_length : float
+        Length of the path up to here, in displacements over the body's size and load factors (`magshell.solver.arc`).
     """
 
     number: int
@@ -40,6 +42,7 @@ class Step(NamedTuple):
     iterations: int
     residual: float
     balance: Balance | None
+    arc_length: float
 
 
 class Probe(NamedTuple):
