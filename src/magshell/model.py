@@ -22,7 +22,7 @@ from magshell.mesh import Mesh
 from magshell.rigid import check_supported
 from magshell.shell.elements import ELEMENTS, QUADRATIC
 from magshell.shell.normals import nodal_normals
-from magshell.supports import Constraints, Support, resolve
+from magshell.supports import Constraints, Support, SymmetryPlane, resolve
 
 STRETCHES = ("linear", "none", "plane-stress")
 NO_FIELD = UniformField((0.0, 0.0, 0.0))
@@ -200,8 +200,19 @@ class Model:
 
     @cached_property
     def normals(self) -> FloatArray:
-        """Unit normals (nodes, 3) of the undeformed mid-surface, averaged over the elements of a node."""
-        return nodal_normals(self.shell.mesh.points, self.shell.mesh.elements)
+        """Unit normals (nodes, 3) of the undeformed mid-surface, averaged over the elements of a node.
+
+        On a mirror plane they lie in it, as the average with the mirror image does.
+        """
+        mesh = self.shell.mesh
+        normals = nodal_normals(mesh.points, mesh.elements)
+        for support in self.supports:
+            if isinstance(support, SymmetryPlane):
+                nodes, plane = mesh.nodes_of(support.group), np.array(support.normal, dtype=float)
+                plane /= np.linalg.norm(plane)
+                inside = normals[nodes] - np.outer(normals[nodes] @ plane, plane)
+                normals[nodes] = inside / np.linalg.norm(inside, axis=1, keepdims=True)
+        return normals
 
 
 def _positive(where: str, value: Any, unit: str) -> float:
