@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 ETAS = (0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0)
 LENGTHS = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0)
 USUAL = 0.1
-SAMPLES: dict[str, Divisions] = {"strip-10": (15, 3), "strip-41": (20, 2), "thin-cross": (2, 2), "gripper": (20, 4)}
+SAMPLES: dict[str, Divisions] = {"strip-10": (15, 3), "strip-41": (20, 2), "thin-cross": (2, 2)}
 
 
 def study(runs: Runs) -> Findings:

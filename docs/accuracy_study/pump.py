@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import magshell as ms
 from accuracy_study.convergence import converged, paper_run, sequence
-from accuracy_study.examples import READINGS, Variant, changed
+from accuracy_study.examples import READINGS, Divisions, Variant, changed
 from accuracy_study.page import LABEL, LEGEND, TEXT, Findings, dress, figure, number, percent, table
 from accuracy_study.runs import Run, Runs, name_of
 from accuracy_study.tube import Tube
@@ -23,7 +23,7 @@ READING = READINGS["pump"]
 LOW, FINAL = READING.fields
 MU, LAME, THICKNESS, RADIUS, HALF_LENGTH = 135e3, 3250e3, 0.9e-3, 22.918311805233e-3, 60e-3
 REMANENCE, MU0 = 94e-3, 4e-7 * np.pi
-FINE, USUAL = (24, 20), (12, 10)
+FINE, MEDIUM, USUAL = (24, 20), (18, 15), (12, 10)
 SHARP = 0.95
 """Grading that makes the elements at one end twenty times smaller than the mean."""
 STEEP = (1.0, 10.0, 20.0, 25.0, *(float(field) for field in range(28, 43)), 45.0, 50.0, 60.0)
@@ -83,7 +83,7 @@ def linear_theory(length: float) -> float:
 
 def _low(runs: Runs) -> str:
     def linear(**keys: float) -> float:
-        graded = Graded("pump", (18, 15), "quadratic", (TINY,), around=0.9, along=0.5)
+        graded = Graded("pump", MEDIUM, "quadratic", (TINY,), around=0.9, along=0.5)
         return READING.of(runs.of(changed(graded, **keys)), TINY) * LOW / TINY
 
     thin, usual = linear_theory(0.0), linear_theory(0.1)
@@ -111,27 +111,30 @@ def _low(runs: Runs) -> str:
 
 
 def _changes(runs: Runs) -> str:
-    low = Graded("pump", (18, 15), "quadratic", (LOW,))
-    final = Graded("pump", USUAL, "quadratic", READING.fields)
-    kinds: dict[str, dict[str, object]] = {
+    kinds: dict[str, dict[str, Any]] = {
+        "as it is (mm)": {},
         "ends: $\\varphi$ held too": {"ends": "phi held"},
+        "the same, graded towards the clamp, 1:20": {"ends": "phi held", "along": SHARP},
         "ends: free to turn": {"ends": "simple"},
-        "ends: $\\varphi$ held too, graded towards the clamp, 1:20": {"ends": "phi held", "along": SHARP},
-        "graded towards the crease, 1:20": {"around": SHARP},
         "graded towards the clamp, 1:20": {"along": SHARP},
+        "graded towards the crease, 1:20": {"around": SHARP},
         "law `micro-rotation`": {"coupling": "micro-rotation"},
         "law `deformation-gradient`": {"coupling": "deformation-gradient"},
     }
-    values = READING.of(runs.of(low), LOW), READING.of(runs.of(final), FINAL)
-    rows = [["as it is (mm)", *map(number, values)]]
-    for words, keys in kinds.items():
-        found = (
-            READING.of(runs.of(changed(low, **keys)), LOW),
-            READING.of(runs.of(changed(final, **keys)), FINAL),
-        )
-        rows.append([words, *(f"{percent(new, old)} %" for new, old in zip(found, values, strict=True))])
-    header = ("Pump", f"{LOW:g} mT, {low.divisions[0]} × {low.divisions[1]}")
-    return table((*header, f"{FINAL:g} mT, {USUAL[0]} × {USUAL[1]}"), rows)
+
+    def reading(divisions: Divisions, fields: tuple[float, ...], keys: dict[str, Any]) -> float:
+        kind = Graded if "around" in keys or "along" in keys else Variant
+        return READING.of(runs.of(kind("pump", divisions, "quadratic", fields, **keys)), fields[-1])
+
+    found = {
+        words: (reading(MEDIUM, (LOW,), keys), reading(USUAL, READING.fields, keys)) for words, keys in kinds.items()
+    }
+    first, *others = found.items()
+    rows = [[first[0], *map(number, first[1])]]
+    for words, values in others:
+        rows.append([words, *(f"{percent(new, old)} %" for new, old in zip(values, first[1], strict=True))])
+    meshes = (f"{field:g} mT, {n} × {m}" for field, (n, m) in ((LOW, MEDIUM), (FINAL, USUAL)))
+    return table(("Pump", *meshes), rows)
 
 
 # -- steep path ------------------------------------------------------------------------------------------------------
