@@ -1,9 +1,9 @@
-# make demo: a virtual environment, the gripper solved, its picture.   make test: lint, types, tests.
+# make demo: a virtual environment, the gripper solved, its picture.   make test: lint, types, tests.   make verify: studies of accuracy (long).
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test lint figures clean
+.PHONY: demo test lint figures verify clean
 
 demo: $(VENV)/installed
 	$(BIN)/magshell run gripper --out results/gripper
@@ -19,6 +19,12 @@ lint: $(VENV)/installed-dev
 
 figures: $(VENV)/installed
 	$(BIN)/python docs/make_figures.py
+
+verify: $(VENV)/installed
+	$(BIN)/python docs/make_accuracy_study.py
+
+verify: $(VENV)/installed
+	$(BIN)/python docs/make_element_study.py
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
