@@ -12,7 +12,7 @@ import time
 from collections.abc import Sequence
 from typing import Any
 
-from element_study.candidates import CANDIDATES, displacements, modes, soft_mode, thin_strip, tip
+from element_study.candidates import CANDIDATES, clamped_plate, displacements, modes, soft_mode, thin_strip, tip
 from element_study.cases import MEMBERS, SMALL_LENGTH_SCALE, Case, Divisions, built_in, cases
 from element_study.convergence import series
 from element_study.pictures import IMAGES, Panel, draw_errors, draw_nodes
@@ -51,6 +51,7 @@ def main() -> None:
         "strip": store.get("thin strip", lambda: tip(thin_strip(QUADRATIC, (32, 4), 0.0), "tip", 3)),
     }
     limits["distorted strip"] = limits["strip"]
+    limits["plate"] = store.get("clamped plate", lambda: tip(clamped_plate(QUADRATIC, 16), "centre", 3))
     published = {name: length_scales(store, name, model) for name, model in SMALL_LENGTH_SCALE.items()}
     tables = {
         "ratios": ratio_table(pairs),

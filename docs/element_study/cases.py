@@ -227,7 +227,7 @@ def cases() -> list[Case]:
     strips = [
         built_in_case(
             name, f"strip of aspect ratio {ratio:g}, tip", (2.0, 10.0, 50.0),
-            {"quadratic": multiples((4, 2), 1, 2, 4, 6), "paper": multiples((4, 2), 1, 2, 4, 8)},
+            {"quadratic": multiples((2, 1), 1, 2, 4, 8), "paper": multiples((2, 1), 1, 2, 4, 8, 16)},
             lambda field, length=length, values=values: Quantity(
                 f"{field:g} mT", field, "tip", 3, 1.0 / length, "L",
                 solid.format(values.split(", ")[(2.0, 10.0, 50.0).index(field)]),
@@ -250,12 +250,12 @@ def cases() -> list[Case]:
         ),
         Case(
             "hemisphere", "hemisphere with a hole, $-u_2$ where it is pushed", hemisphere,
-            {"quadratic": multiples((4, 4), 2, 3, 4, 5), "paper": multiples((4, 4), 2, 3, 4, 6, 8)},
+            {"quadratic": multiples((4, 4), 1, 2, 3, 4), "paper": multiples((4, 4), 1, 2, 3, 4, 6)},
             [Quantity("pushed point", 1.0, "in", 2, -1.0, "", "Sze et al. 8.178")],
         ),
         Case(
             "annulus", "slit annulus, $u_3$ at the outer corner", annulus,
-            {"quadratic": multiples((10, 2), 1, 2, 3, 4), "paper": multiples((10, 2), 1, 2, 3, 4, 6)},
+            {"quadratic": multiples((10, 2), 1, 2, 3), "paper": multiples((10, 2), 1, 2, 3, 4)},
             [Quantity("outer corner", 1.0, "B", 3, 1.0, "", "Sze et al. 17.528")],
         ),
     ]  # fmt: skip

@@ -84,11 +84,15 @@ def series(runs: Sequence[dict], case: Case, member: str, quantity: Quantity) ->
 
 
 def at_equal_unknowns(better: Series, other: Series) -> np.ndarray:
-    """Errors of the other over those of the better one, at every number of unknowns of either that both span."""
+    """Errors of the other over those of the better one, at every number of unknowns of either that both span.
+
+    The members should have one limit: what is below the difference of the two they have counts as that difference.
+    """
+    known = abs(other.limit / better.limit - 1.0)
     both = np.union1d(better.unknowns, other.unknowns)
     first, last = max(better.unknowns[0], other.unknowns[0]), min(better.unknowns[-1], other.unknowns[-1])
     both = np.log(both[(both >= first) & (both <= last)])
-    errors = [np.interp(both, np.log(one.unknowns), np.log(one.sure)) for one in (better, other)]
+    errors = [np.interp(both, np.log(one.unknowns), np.log(np.maximum(one.sure, known))) for one in (better, other)]
     return np.exp(errors[1] - errors[0])
 
 

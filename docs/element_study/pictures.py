@@ -19,6 +19,8 @@ from magshell.shell.shape_functions import NODES, serendipity
 
 IMAGES = pathlib.Path(__file__).parents[1] / "images"
 DPI = 120
+LEAST = 1e-4
+"""Errors below are not shown: no limit here is known so well."""
 LOOK = {"quadratic": {"color": COLOURS[0], "marker": "o"}, "paper": {"color": ACCENT, "marker": "s"}}
 
 
@@ -41,6 +43,7 @@ def draw_errors(panels: Sequence[Panel], name: str) -> None:
         axes[1, column].set_xlabel("CPU time (s)", fontsize=13, color=INK)
     for row in range(2):
         axes[row, 0].set_ylabel("error", **TEXT)
+    axes[0, 0].set_ylim(bottom=max(axes[0, 0].get_ylim()[0], LEAST))
     axes[0, 0].legend(frameon=False, fontsize=13, loc="lower left", handlelength=1.4, borderpad=0.1)
     figure.tight_layout(h_pad=1.6, w_pad=1.2)
     deliver(figure, IMAGES / f"{name}.png")
@@ -73,7 +76,7 @@ SHAPE = np.vstack([CORNERS, 0.5 * (CORNERS + np.roll(CORNERS, -1, axis=0)) + BUL
 
 def draw_nodes() -> None:
     """Which nodes carry which field, and the points, of both members."""
-    figure = Figure(figsize=(11.0, 5.6), dpi=DPI)
+    figure = Figure(figsize=(11.0, 5.2), dpi=DPI)
     axes = figure.subplots(2, 4)
     titles = ("$u$", "$w$ and micro-rotation", r"$\varphi$", "integration points")
     for row, element in enumerate((QUADRATIC, PAPER)):
@@ -85,15 +88,16 @@ def draw_nodes() -> None:
         points = serendipity(element.rule.points)[0] @ SHAPE
         axes[row, 3].plot(*points.T, "x", color=GREY, markersize=9, markeredgewidth=2.0)
         axes[row, 0].text(-1.5, 0.0, element.name, rotation=90, va="center", ha="center", **TEXT)
-        if element.modes:
-            axes[row, 3].text(0.0, -1.45, _enhancement(element), ha="center", va="center", fontsize=12, color=GREY)
+        axes[row, 3].text(0.0, -1.42, _own_parameters(element), ha="center", va="center", fontsize=12, color=GREY)
     for column, title in enumerate(titles):
         axes[0, column].set_title(title, pad=8, **TEXT)
     figure.subplots_adjust(left=0.05, right=0.99, top=0.91, bottom=0.04, wspace=0.05, hspace=0.12)
     deliver(figure, IMAGES / "element-nodes.png")
 
 
-def _enhancement(element: ElementType) -> str:
+def _own_parameters(element: ElementType) -> str:
+    if element.bubble:
+        return "and 3 parameters of a bubble in $u$"
     return f"and {3 * len(element.modes)} enhanced parameters"
 
 
@@ -106,6 +110,6 @@ def _outline(axes: Axes) -> None:
     curve = serendipity(around)[0] @ SHAPE
     axes.add_patch(Polygon(curve, closed=True, facecolor="#f3f4f6", edgecolor=PALE, linewidth=1.6))
     axes.set_xlim(-1.6, 1.6)
-    axes.set_ylim(-1.6, 1.35)
+    axes.set_ylim(-1.55, 1.25)
     axes.set_aspect("equal")
     axes.set_axis_off()
