@@ -1,4 +1,5 @@
-# make demo: a virtual environment, the gripper solved, its picture.   make test: lint, types, tests.   make verify: studies of accuracy (long).
+# make demo: a virtual environment, the gripper solved, its picture.   make test: lint, types, tests.
+# make verify: the studies of docs/element.md and docs/how-accurate.md; more than half an hour, may be interrupted.
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
@@ -21,10 +22,8 @@ figures: $(VENV)/installed
 	$(BIN)/python docs/make_figures.py
 
 verify: $(VENV)/installed
-	$(BIN)/python docs/make_accuracy_study.py
-
-verify: $(VENV)/installed
 	$(BIN)/python docs/make_element_study.py
+	$(BIN)/python docs/make_accuracy_study.py
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
