@@ -18,7 +18,7 @@ from magshell.assembly import Assembly, Discretisation, InvertedElement
 from magshell.linalg import LinearSolver, SingularMatrix
 from magshell.shell.loops import Stresses
 from magshell.shell.state import State
-from magshell.solver.arc import NoRoot, Sphere
+from magshell.solver.arc import Cylinder, NoRoot
 from magshell.solver.settings import Settings
 
 HALVINGS = 4
@@ -53,11 +53,11 @@ def newton(
     discretisation: Discretisation,
     linear_solver: LinearSolver,
     trial: Trial,
-    sphere: Sphere | None,
+    cylinder: Cylinder | None,
     settings: Settings,
     report: Callable[[int, str, float], None],
 ) -> Solution:
-    """Solve for equilibrium at the trial's load factor or, with a sphere, on it at a load factor that is found.
+    """Solve for equilibrium at the trial's load factor or, with a cylinder, on it at a load factor that is found.
 
     Raises
     ------
@@ -88,12 +88,12 @@ def newton(
             raise StepFailure(_free_direction(discretisation, direction)) from None
         increment = discretisation.expand(linear_solver.solve(assembly.right_side), trial.imposed)
         d_load = 0.0
-        if sphere is not None:
+        if cylinder is not None:
             stresses = trial.stresses if settings.mixed_tangent else None
             direction = discretisation.load_direction(trial.state, trial.load_factor, stresses, assembly.residual)
             per_load = discretisation.expand(linear_solver.solve(direction), discretisation.imposed(1.0))
             try:
-                d_load = sphere.d_load(trial.state, trial.load_factor, increment, per_load)
+                d_load = cylinder.d_load(trial.state, increment, per_load)
             except NoRoot:
                 raise StepFailure("the increment misses the arc length") from None
             increment = increment + d_load * per_load

@@ -33,7 +33,7 @@ class Step(NamedTuple):
     balance : Balance or None
         Global equilibrium; None for the undeformed state.
     arc_length : float
-        Length of the path up to here, in displacements over the body's size and load factors (`magshell.solver.arc`).
+        Length of the path up to here, in displacements over the body's size (`magshell.solver.arc`).
     """
 
     number: int

@@ -13,7 +13,7 @@ from magshell.assembly import Discretisation, InvertedElement
 from magshell.errors import SolveError
 from magshell.linalg import LinearSolver, make_solver, nested_dissection
 from magshell.model import Model
-from magshell.solver.arc import Sphere, distance
+from magshell.solver.arc import Cylinder, distance
 from magshell.solver.balance import balance
 from magshell.solver.events import Iteration, Observer
 from magshell.solver.newton import Solution, StepFailure, Trial, newton
@@ -25,6 +25,8 @@ logger = logging.getLogger(__name__)
 GROWTH, CUT = 2.5, 0.35
 # Cuts in a row after which the load factor becomes an unknown, and steps that it may take to come back.
 PATIENCE, WANDERING = 4, 400
+# Largest angle between two steps by arc length: beyond it the path has been left, or run back.
+SHARPEST = np.pi / 3
 
 
 def solve(model: Model, settings: Settings | None = None, observers: Sequence[Observer] = ()) -> Path:
@@ -81,7 +83,7 @@ def _follow(path: Path, linear_solver: LinearSolver, observers: Sequence[Observe
     _keep(path, Step(0, 0.0, discretisation.undeformed(), 0, 0.0, None, 0.0), observers)
     size, radius, in_a_row, wandered, reason = settings.first_step, 0.0, 0, 0, ""
 
-    def attempt(trial: Trial, sphere: Sphere | None) -> bool:
+    def attempt(trial: Trial, cylinder: Cylinder | None) -> bool:
         """Whether the step converged, and is kept; otherwise the observers know why not."""
         nonlocal reason
 
@@ -92,8 +94,8 @@ def _follow(path: Path, linear_solver: LinearSolver, observers: Sequence[Observe
                 observer.iterated(Iteration(len(path.steps), trial.load_factor, iteration, residual, kind, seconds))
 
         try:
-            solution = newton(discretisation, linear_solver, trial, sphere, settings, report)
-            if sphere is not None and _turns_back(path, solution):
+            solution = newton(discretisation, linear_solver, trial, cylinder, settings, report)
+            if cylinder is not None and _turns_back(path, solution):
                 raise StepFailure("the path turns back on itself")
         except (StepFailure, InvertedElement) as failure:
             reason = (
@@ -112,8 +114,8 @@ def _follow(path: Path, linear_solver: LinearSolver, observers: Sequence[Observe
         if radius > 0.0:
             trial = _along(path, last.arc_length + radius)
             across = trial.load_factor >= stop
-            sphere = None if across else _sphere(path, trial)
-            if attempt(_at_stop(path, radius, stop) if across else trial, sphere):
+            cylinder = None if across else _cylinder(path, trial)
+            if attempt(_at_stop(path, radius, stop) if across else trial, cylinder):
                 in_a_row, wandered = 0, wandered + 1
                 radius = 0.0 if across else radius * _growth(path)
             else:
@@ -144,7 +146,7 @@ def _growth(path: Path) -> float:
 
 def _step(path: Path, solution: Solution) -> Step:
     last, discretisation = path.steps[-1], path.discretisation
-    travelled = distance(last.state, solution.state, solution.load_factor - last.load_factor, _length(path))
+    travelled = distance(last.state, solution.state, discretisation.mesh.size)
     return Step(
         len(path.steps), solution.load_factor, solution.state, solution.solves, solution.residuals[-1],
         balance(discretisation, solution.state, solution.load_factor, solution.assembly.residual),
@@ -153,17 +155,10 @@ def _step(path: Path, solution: Solution) -> Step:
 
 
 def _turns_back(path: Path, solution: Solution) -> bool:
-    """Whether a solution lies more than a right angle off the direction of the last step."""
-    before, last = path.steps[-2:]
-    du, dt = last.state.u - before.state.u, last.load_factor - before.load_factor
-    away = float(np.sum((solution.state.u - last.state.u) * du)) / _length(path) ** 2
-    return away + (solution.load_factor - last.load_factor) * dt < 0.0
-
-
-def _length(path: Path) -> float:
-    """What makes the displacements of all nodes a number, m."""
-    mesh = path.discretisation.mesh
-    return float(mesh.size * np.sqrt(len(mesh.points)))
+    """Whether a solution lies more than `SHARPEST` off the direction of the last step."""
+    before, last = path.steps[-2].state, path.steps[-1].state
+    old, new = last.u - before.u, solution.state.u - last.u
+    return float(np.sum(old * new)) < np.cos(SHARPEST) * float(np.linalg.norm(old) * np.linalg.norm(new))
 
 
 def _keep(path: Path, step: Step, observers: Sequence[Observer]) -> None:
@@ -225,11 +220,10 @@ def _extrapolated(path: Path, weights: FloatArray, load_factor: float) -> Trial:
     )
 
 
-def _sphere(path: Path, trial: Trial) -> Sphere:
+def _cylinder(path: Path, trial: Trial) -> Cylinder:
     """States as far from the last one as the trial state."""
-    last = path.steps[-1]
-    ahead = trial.state.u - last.state.u
-    return Sphere(last.state.u, last.load_factor, ahead, trial.load_factor - last.load_factor, _length(path))
+    last = path.steps[-1].state
+    return Cylinder(last.u, trial.state.u - last.u)
 
 
 def _give_up(path: Path, load_factor: float, reason: str) -> str:
