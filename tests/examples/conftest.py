@@ -7,16 +7,19 @@ from functools import cache
 
 import pytest
 
-from magshell import Path, problem, solve
+from examples.problems import read
+from magshell import Path, solve
+from magshell.problem.building import build
 
 
 @pytest.fixture(scope="session")
 def solved() -> Callable[[str], Path]:
-    """Path of a built-in problem, by name, with the settings that a user gets."""
+    """Path of a built-in problem, by name, with the element of the source and the settings that a user gets."""
 
     @cache
     def path(name: str) -> Path:
-        built = problem.load(name)
+        source, file = read(name)
+        built = build(file, source)
         return solve(built.model, built.settings)
 
     return path

@@ -9,6 +9,7 @@ import numpy as np
 from examples.references import STRIP_LENGTHS, Reference
 from magshell import problem
 from magshell.problem.building import Problem, build
+from magshell.problem.schema import ProblemFile
 from magshell.solver import Path
 
 
@@ -21,15 +22,23 @@ def value_at(path: Path, reference: Reference) -> float:
     return value / (1e-3 if reference.unit == "mm" else STRIP_LENGTHS[reference.problem])
 
 
+def read(name: str, element: str = "paper") -> tuple[str, ProblemFile]:
+    """A built-in problem with the element of the source, whose values the references on the files' meshes are."""
+    source, file = problem.read(name)
+    shell = file.shell.model_copy(update={"element": element})
+    return source, file.model_copy(update={"shell": shell})
+
+
 def variant(
     name: str,
     divide: int = 1,
     stops: tuple[float, ...] = (),
     coupling: str = "couple",
     length_scale: float | None = None,
+    element: str = "paper",
 ) -> Problem:
     """A built-in problem with every element divided into divide × divide, its own stops (T), law and l (m)."""
-    source, file = problem.read(name)
+    source, file = read(name, element)
     changes: dict[str, Any] = {}
     if getattr(file.mesh, "elements", None) is not None:
         changes["elements"] = _times(file.mesh.elements, divide)
