@@ -132,7 +132,7 @@ def test_complete_functions_hold_every_quadratic_polynomial(shift, coefficient, 
 
 def test_plain_functions_do_not():
     """By as much as the distortion: this is what the complete ones add."""
-    corners = SQUARE + [[0.0, 0.0], [0.0, 0.0], [0.4, 0.3], [0.0, 0.0]]
+    corners = SQUARE + np.array([[0.0, 0.0], [0.0, 0.0], [0.4, 0.3], [0.0, 0.0]])
     plane = np.vstack([corners, 0.5 * (corners + np.roll(corners, -1, axis=0))])
     at = np.array([[0.0, 0.0]])
     error = abs(serendipity(at)[0][0] @ plane[:, 0] ** 2 - (bilinear(at)[0] @ corners)[0, 0] ** 2)
