@@ -82,9 +82,9 @@ def test_singular_direction_is_named(column: int, name: str) -> None:
     direction = np.zeros(discretisation.dofs)
     direction[equation_numbers(discretisation)[tip, column]] = 1.0
     start = discretisation.undeformed()
-    trial = Trial(start, discretisation.stresses_at(start), None)
+    trial = Trial(start, 0.1, discretisation.stresses_at(start), None)
     with pytest.raises(StepFailure) as caught:
-        newton(discretisation, Singular(direction), trial, 0.1, Settings(), lambda *_: None)
+        newton(discretisation, Singular(direction), trial, None, Settings(), lambda *_: None)
     expected = f"the free direction is largest in {name} of node {tip} at (11, 0, 0) mm"
     assert expected in str(caught.value), str(caught.value)
 

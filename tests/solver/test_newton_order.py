@@ -65,9 +65,9 @@ def errors(case: Case, mixed: bool, ε: float) -> np.ndarray:
     model, start = case.model, converged(case)
     discretisation = Recording(model, nested_dissection)
     discretisation.states = []
-    trial = Trial(start, discretisation.stresses_at(start), None)
+    trial = Trial(start, BEGIN * (1 + ε), discretisation.stresses_at(start), None)
     settings = Settings(tolerance=SHARP, mixed_tangent=mixed, max_iterations=20)
-    newton(discretisation, make_solver("superlu"), trial, BEGIN * (1 + ε), settings, lambda *_: None)
+    newton(discretisation, make_solver("superlu"), trial, None, settings, lambda *_: None)
     *iterates, solution = discretisation.states
     return np.array([np.linalg.norm(state.u - solution.u) for state in iterates[:3]])
 

@@ -65,7 +65,10 @@ def newton(
         No convergence, an inverted element, a singular tangent.
     """
     residuals: list[float] = []
-    assembly = _assemble(discretisation, trial, settings)
+    try:
+        assembly = _assemble(discretisation, trial, settings)
+    except InvertedElement as inverted:
+        raise StepFailure(_inverted(inverted)) from None
     while True:
         kind, residual = assembly.worst
         residuals.append(residual)
