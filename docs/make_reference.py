@@ -127,6 +127,8 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "parameters.",
             "thickness_stretch": "Stretch that varies linearly across the thickness: an unknown $\\varphi$, none "
             "(locks in bending), or eliminated at each point.",
+            "micro_rotation": "Without it: the classical shell of seven parameters, whose `coupling_modulus` and "
+            "`length_scale` are 0, and whose coupling is `deformation-gradient`.",
         },
     ),
     "neo-hookean": (schema.NeoHookean, MATERIAL),
@@ -134,6 +136,7 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
         schema.MooneyRivlin,
         {**MATERIAL, "second_invariant_share": "Part of $\\mu$ carried by the second invariant, in [0, 1)."},
     ),
+    "st-venant-kirchhoff": (schema.StVenantKirchhoff, MATERIAL),
     "constant": (
         schema.ConstantRemanence,
         {
@@ -230,6 +233,8 @@ OTHERWISE = {
     ("neo-hookean", "length_scale"): "$h/10$",
     ("mooney-rivlin", "coupling_modulus"): "$\\mu/10$",
     ("mooney-rivlin", "length_scale"): "$h/10$",
+    ("st-venant-kirchhoff", "coupling_modulus"): "$\\mu/10$",
+    ("st-venant-kirchhoff", "length_scale"): "$h/10$",
     ("blocks", "elements"): "each block its own",
     ("block", "elements"): "those of `mesh`",
     ("constant", "vector"): "magnitude and direction",
