@@ -25,6 +25,8 @@ from magshell.shell.normals import nodal_normals
 from magshell.supports import Constraints, Support, SymmetryPlane, resolve
 
 STRETCHES = ("linear", "none", "plane-stress")
+# Sine of the angle between mid-surface and mirror plane below which the shell does not cross the plane.
+TOUCHING = 1e-6
 NO_FIELD = UniformField((0.0, 0.0, 0.0))
 NO_REMANENCE = constant((0.0, 0.0, 0.0))
 
@@ -202,7 +204,7 @@ class Model:
     def normals(self) -> FloatArray:
         """Unit normals (nodes, 3) of the undeformed mid-surface, averaged over the elements of a node.
 
-        On a mirror plane they lie in it, as the average with the mirror image does.
+        On a mirror plane they lie in it, as the average with the mirror image does, unless the shell touches the plane.
         """
         mesh = self.shell.mesh
         normals = nodal_normals(mesh.points, mesh.elements)
@@ -211,7 +213,9 @@ class Model:
                 nodes, plane = mesh.nodes_of(support.group), np.array(support.normal, dtype=float)
                 plane /= np.linalg.norm(plane)
                 inside = normals[nodes] - np.outer(normals[nodes] @ plane, plane)
-                normals[nodes] = inside / np.linalg.norm(inside, axis=1, keepdims=True)
+                length = np.linalg.norm(inside, axis=1)
+                meets = length > TOUCHING
+                normals[nodes[meets]] = inside[meets] / length[meets, None]
         return normals
 
 
