@@ -26,7 +26,7 @@ CROSS = (9.301, 15.383, 19.046, 21.356, 22.234, 22.720)
 """Height of the tip A over the tip D of the thin cross, mm, by three-dimensional micropolar finite elements."""
 
 FINE: Divisions = (4, 4)
-MESHES: dict[str, Divisions] = {"strip-10": (20, 4), "strip-17": (30, 3), "strip-20": (30, 3), "strip-41": (40, 4)}
+MESHES: dict[str, Divisions] = {"strip-10": (15, 4), "strip-17": (20, 4), "strip-20": (20, 4), "strip-41": (24, 4)}
 
 
 def study(runs: Runs) -> Findings:
