@@ -98,9 +98,9 @@ def converged() -> State:
 def errors(ε: float) -> np.ndarray:
     """Distance of u from the solution before and after each of two iterations, m (root of the sum of squares)."""
     discretisation, start = Recording(arm(BENDING)), converged()
-    trial = Trial(start, discretisation.stresses_at(start), None)
+    trial = Trial(start, BEGIN * (1 + ε), discretisation.stresses_at(start), None)
     settings = Settings(tolerance=SHARP, max_iterations=20)
-    newton(discretisation, make_solver("superlu"), trial, BEGIN * (1 + ε), settings, lambda *_: None)
+    newton(discretisation, make_solver("superlu"), trial, None, settings, lambda *_: None)
     *iterates, solution = discretisation.states
     return np.array([np.linalg.norm(state.u - solution.u) for state in iterates[:3]])
 
