@@ -156,7 +156,7 @@ def _picture(runs: Runs) -> Figure:
         low, final = reading.fields
         axes.set_title(f"{example}   {low:g} / {final:g} mT", **TEXT)
         axes.set_ylim(1e-3, 40.0)
-        axes.set_xlim(0.3, 4.0)
+        axes.set_xlim(0.29, 4.5)
         axes.set_xticks([0.5, 1.0, 2.0], ["½", "1", "2"])
         axes.minorticks_off()
     panels[0, 0].legend(**LEGEND)
