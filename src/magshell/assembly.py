@@ -18,7 +18,7 @@ from magshell.nodal import COLUMNS, COMPONENTS, width
 from magshell.shell import loops, rotation
 from magshell.shell.bubble import held_energy, hold
 from magshell.shell.element import Layout
-from magshell.shell.evaluation import evaluate
+from magshell.shell.evaluation import evaluate, micropolar_stretch, plane_stress_stretch
 from magshell.shell.geometry import interpolation, least_shifts, section_geometry, unit_forces
 from magshell.shell.state import State
 
@@ -387,9 +387,10 @@ class Discretisation:
 
     def element_energy(self, state: State) -> FloatArray:
         """Strain energy (elements,), J, couple stress included."""
-        fields, geometry, material = evaluate(self.body, state), self.body.geometry, self.model.shell.material
-        U = np.moveaxis(np.einsum("epyx,epkyz->epkxz", fields.R, fields.F), (-2, -1), (0, 1))
-        stretch = (strain_energy(material, U) * geometry.volume).sum(axis=(1, 2))
+        body, geometry, material = self.body, self.body.geometry, self.model.shell.material
+        φ = plane_stress_stretch(body, state, material) if body.plane_stress else None
+        fields = evaluate(body, state, φ)
+        stretch = (strain_energy(material, micropolar_stretch(fields)) * geometry.volume).sum(axis=(1, 2))
         wryness = np.einsum("epab,epax,epbx->e", geometry.metric, fields.kappa, fields.kappa)
         held = held_energy(self.body.hold, state.u[self.mesh.elements], state.alpha)
         return np.asarray(stretch + 0.5 * material.couple_modulus * wryness + held)

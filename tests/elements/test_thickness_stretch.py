@@ -68,3 +68,15 @@ def test_balance(stretch: str) -> None:
     step = strip("quadratic", stretch).steps[-1]
     assert max(step.balance.force_imbalance, step.balance.moment_imbalance) < 1e-8, step.balance
     assert np.linalg.det(evaluate(strip("quadratic", stretch).discretisation.body, step.state).F).min() > 0.9
+
+
+def test_energy_is_half_the_work() -> None:
+    """At a small load the stored energy is half of load times displacement; here of a dead force at the end."""
+    for stretch in ("none", *TWO):
+        model = strip("quadratic", stretch).model
+        force = np.array([0.0, 0.0, 1e-6])
+        pulled = ms.solve(ms.Model(model.shell, model.supports, probes=model.probes, loads=[ms.Force("right", force)]))
+        step, d = pulled.steps[-1], pulled.discretisation
+        work = 0.5 * float(np.sum(d.model.nodal_loads[:, :3] * step.state.u))
+        energy = float(d.element_energy(step.state).sum())
+        assert energy == pytest.approx(work, rel=1e-5), f"{stretch}: {energy / work - 1.0:.1e}"
