@@ -14,7 +14,7 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from element_study.convergence import Series
 from magshell.output.style import ACCENT, COLOURS, GREY, INK, PALE, TEXT, TICKS, deliver
-from magshell.shell.elements import PAPER, QUADRATIC, ElementType
+from magshell.shell.elements import PAPER, QUADRATIC
 from magshell.shell.shape_functions import NODES, serendipity
 
 IMAGES = pathlib.Path(__file__).parents[1] / "images"
@@ -44,7 +44,7 @@ def draw_errors(panels: Sequence[Panel], name: str) -> None:
     for row in range(2):
         axes[row, 0].set_ylabel("error", **TEXT)
     axes[0, 0].set_ylim(bottom=max(axes[0, 0].get_ylim()[0], LEAST))
-    axes[0, 0].legend(frameon=False, fontsize=13, loc="lower left", handlelength=1.4, borderpad=0.1)
+    axes[0, 0].legend(frameon=False, fontsize=13, loc="upper right", handlelength=1.4, borderpad=0.1)
     figure.tight_layout(h_pad=1.6, w_pad=1.2)
     deliver(figure, IMAGES / f"{name}.png")
 
@@ -88,17 +88,14 @@ def draw_nodes() -> None:
         points = serendipity(element.rule.points)[0] @ SHAPE
         axes[row, 3].plot(*points.T, "x", color=GREY, markersize=9, markeredgewidth=2.0)
         axes[row, 0].text(-1.5, 0.0, element.name, rotation=90, va="center", ha="center", **TEXT)
-        axes[row, 3].text(0.0, -1.42, _own_parameters(element), ha="center", va="center", fontsize=12, color=GREY)
+        column, words = 1, f"and {3 * len(element.modes)} enhanced parameters"
+        if element.bubble:
+            column, words = 0, "and a bubble"
+        axes[row, column].text(0.0, -1.42, words, ha="center", va="center", fontsize=12, color=GREY)
     for column, title in enumerate(titles):
         axes[0, column].set_title(title, pad=8, **TEXT)
     figure.subplots_adjust(left=0.05, right=0.99, top=0.91, bottom=0.04, wspace=0.05, hspace=0.12)
     deliver(figure, IMAGES / "element-nodes.png")
-
-
-def _own_parameters(element: ElementType) -> str:
-    if element.bubble:
-        return "and 3 parameters of a bubble in $u$"
-    return f"and {3 * len(element.modes)} enhanced parameters"
 
 
 def _outline(axes: Axes) -> None:

@@ -134,8 +134,8 @@ def run(
 def _settle(path: Path, free: ms.Model, clock: Clock) -> None:
     """Replace the last step of a path by the equilibrium of another model that starts from it."""
     discretisation, last = Discretisation(free, nested_dissection), path.steps[-1]
-    start = Trial(last.state, discretisation.stresses_at(last.state), None)
-    solution = newton(discretisation, make_solver("superlu"), start, 1.0, path.settings, lambda *_: None)
+    start = Trial(last.state, 1.0, discretisation.stresses_at(last.state), None)
+    solution = newton(discretisation, make_solver("superlu"), start, None, path.settings, lambda *_: None)
     path.steps[-1] = last._replace(state=solution.state)
     path.discretisation = discretisation
     path.solves += solution.solves

@@ -30,7 +30,8 @@ class Pair(NamedTuple):
     @property
     def name(self) -> str:
         """As in tables."""
-        return f"{self.case.title.split(',')[0]}, {self.quantity.name}"
+        body = self.case.title.split(",")[0].replace("strip of aspect ratio", "strip")
+        return f"{body.split(' with ')[0]}, {self.quantity.name}"
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
