@@ -3,7 +3,8 @@ r"""The inextensible elastica of a cantilever, magnetised along its length, in a
     θ'' + q cos θ = 0,  θ(0) = 0,  θ'(1) = 0,  q = 12 (L/h)² B̃ B / (μ0 E)
 
 with the arc length in units of the length L. With δ = π/2 - θ and t the arc length from the free end it is a pendulum
-that starts at rest: δ'' = q sin δ, δ(0) = δ_tip, δ(1) = π/2.
+that starts at rest: δ'' = q sin δ, δ(0) = δ_tip, δ(1) = π/2. As sin δ < δ, δ_tip exceeds that of the linear equation,
+(π/2)/cosh √q; the first root above it is the one without loops.
 """
 
 from __future__ import annotations
@@ -29,5 +30,8 @@ def tip_deflection(q: float) -> float:
 
     quarter = 0.5 * math.pi
     lower = quarter / math.cosh(math.sqrt(q))
-    at_tip = brentq(lambda angle: end(angle)[0] - quarter, lower, quarter, xtol=1e-15)
+    upper = 1.1 * lower
+    while end(upper)[0] < quarter:
+        lower, upper = upper, 1.1 * upper
+    at_tip = brentq(lambda angle: end(angle)[0] - quarter, lower, upper, xtol=1e-15)
     return float(end(at_tip)[2])

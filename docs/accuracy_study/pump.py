@@ -11,7 +11,7 @@ import magshell as ms
 from accuracy_study.convergence import converged, paper_run, sequence
 from accuracy_study.examples import READINGS, Divisions, Variant, changed
 from accuracy_study.page import LABEL, LEGEND, TEXT, Findings, dress, figure, number, percent, table
-from accuracy_study.runs import Run, Runs, name_of
+from accuracy_study.runs import Runs, name_of
 from accuracy_study.tube import Tube
 from magshell.mesh import Mesh
 from magshell.output.style import COLOURS, PALE
@@ -114,7 +114,7 @@ def _low(runs: Runs) -> str:
 
 def _changes(runs: Runs) -> str:
     kinds: dict[str, dict[str, Any]] = {
-        "as it is (mm)": {},
+        "as it is (mm); below, change in per cent": {},
         "ends: $\\varphi$ held too": {"ends": "phi held"},
         "the same, graded towards the clamp, 1:20": {"ends": "phi held", "along": SHARP},
         "ends: free to turn": {"ends": "simple"},
@@ -134,7 +134,7 @@ def _changes(runs: Runs) -> str:
     first, *others = found.items()
     rows = [[first[0], *map(number, first[1])]]
     for words, values in others:
-        rows.append([words, *(f"{percent(new, old)} %" for new, old in zip(values, first[1], strict=True))])
+        rows.append([words, *(percent(new, old) for new, old in zip(values, first[1], strict=True))])
     meshes = (f"{field:g} mT, {n} × {m}" for field, (n, m) in ((LOW, MEDIUM), (FINAL, USUAL)))
     return table(("Pump", *meshes), rows)
 
@@ -153,8 +153,9 @@ class Steep(Variant):
 
 
 def _steep(runs: Runs) -> tuple[str, Figure]:
-    every: dict[str, Run] = {
-        f"default {n} × {m}": runs.of(Steep("pump", (n, m), "quadratic", STEEP)) for n, m in (USUAL, MEDIUM)
+    every = {
+        "default 12 × 10": runs.of(Variant("pump", USUAL, "quadratic", READING.fields)),
+        "default 18 × 15": runs.of(Steep("pump", MEDIUM, "quadratic", STEEP)),
     }
     every["paper's 24 × 20"] = runs.of(Steep("pump", FINE, "paper", STEEP))
     for law in LAWS[1:]:
@@ -172,10 +173,12 @@ def _steep(runs: Runs) -> tuple[str, Figure]:
         largest = f"{values[jump]:.2f} to {values[jump + 1]:.2f} mm near {fields[jump]:.1f} mT"
         end = "reached" if not run.reason else f"stops at {fields[-1]:.2f} mT"
         rows.append((words, ", ".join(turns) or "none", largest, str(len(fields) - 1), str(run.cuts), end))
+    whole.set_xlim(0.0, STEEP[-1])
+    whole.set_ylim(0.0, 12.0)
     near.set_xlim(31.0, 37.0)
     near.set_ylim(7.0, 10.6)
-    whole.legend(**LEGEND)
-    header = ("Pump to 45 mT", "Turns back at (mT)", "Largest step", "Steps", "Cuts", "End")
+    whole.legend(loc="upper left", **LEGEND)
+    header = ("Pump", "Turns at (mT)", "Largest step", "Steps", "Cuts", "End")
     return table(header, rows, 3), new
 
 
@@ -212,17 +215,21 @@ def _crease(runs: Runs) -> Figure:
         "default, 36 × 10, graded 1:20": Graded("pump", (36, 10), "quadratic", (LOW,), around=SHARP),
     }
     new = figure((13.0, 5.2))
-    panels = new.subplots(1, 2, sharey=True)
-    for axes, title in zip(panels, ("micro-rotation", "director"), strict=True):
+    panels = new.subplots(1, 2)
+    titles = (f"micro-rotation about $X_2$, middle section, {LOW:g} mT", "micro-rotation less rotation of the director")
+    for axes, title in zip(panels, titles, strict=True):
         dress(axes, "angle from the side (degrees); 90 is the top")
-        axes.set_title(f"rotation of the {title} about $X_2$, middle section, {LOW:g} mT", **TEXT)
+        axes.set_title(title, **TEXT)
         axes.axhline(0.0, color=PALE, linewidth=1.0)
-        axes.set_xlim(0.0, 91.0)
     for place, (words, variant) in reversed(list(enumerate(kinds.items()))):
-        angle, *rotations = _profile(runs, variant)
-        for axes, rotation in zip(panels, rotations, strict=True):
-            style = {"marker": "so."[place], "markersize": (6, 4, 3)[place], "color": COLOURS[(1, 0, 2)[place]]}
+        angle, micro, director = _profile(runs, variant)
+        style = {"marker": "sod"[place], "markersize": (6, 4, 3)[place], "color": COLOURS[(1, 0, 2)[place]]}
+        for axes, rotation in zip(panels, (micro, micro - director), strict=True):
             axes.plot(angle, rotation, linewidth=1.6, label=words, **style)
+    panels[0].set_xlim(0.0, 91.0)
+    panels[0].set_ylim(-6.0, 46.0)
+    panels[1].set_xlim(60.0, 90.3)
+    panels[1].set_ylim(-0.1, 3.2)
     panels[0].set_ylabel("mrad", **LABEL)
-    panels[1].legend(**LEGEND)
+    panels[0].legend(loc="upper left", **LEGEND)
     return new

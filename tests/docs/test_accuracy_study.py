@@ -38,6 +38,14 @@ def test_elastica_has_the_tabulated_deflection(q: float) -> None:
     assert found == pytest.approx(TABLE[q], abs=0.6e-5), f"q = {q}: {found}, table {TABLE[q]}"
 
 
+def test_elastica_of_a_large_load_stands_up_without_loops() -> None:
+    """Upright but for a bend of length 1/√q: 1 - w = ∫(1 - cos δ) = (2 - √2)/√q, with δ' = 2 √q sin(δ/2)."""
+    for q in (53.0, 60.0):
+        bend = (2.0 - math.sqrt(2.0)) / math.sqrt(q)
+        found = 1.0 - tip_deflection(q)
+        assert found == pytest.approx(bend, rel=4.0 * math.exp(-math.sqrt(q))), f"q = {q}: {found}, {bend}"
+
+
 def test_elastica_of_a_small_load_is_a_beam() -> None:
     """θ'' = -q, so that w = q/3 to the third power of q."""
     q = 1e-3
