@@ -49,9 +49,11 @@ def test_parallel_run_is_the_same_as_a_direct_one(outcomes) -> None:
         assert path is not None, outcomes[0][name].reason
         assert [step.load_factor for step in path.steps] == [step.load_factor for step in direct.steps]
         for one, other in zip(path.steps, direct.steps, strict=True):
-            np.testing.assert_array_equal(one.state.u, other.state.u)
+            apart = np.abs(one.state.u - other.state.u).max()
+            assert apart <= 1e-9 * np.abs(other.state.u).max(), f"step {one.number}: {apart:.1e} m"
         assert path.summary.keys() == direct.summary.keys()
-        assert path.summary["probes"] == direct.summary["probes"]
+        for probe, displacement in direct.summary["probes"].items():
+            assert path.summary["probes"][probe] == pytest.approx(displacement, rel=1e-9, abs=1e-12)
         assert path.converged
 
 
