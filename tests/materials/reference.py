@@ -38,7 +38,7 @@ def mooney_rivlin(material, U):
 
 
 def st_venant_kirchhoff(material, U):
-    """lambda/2 (tr E)² + mu tr E², from the invariants of C = UᵀU: tr E = (I_1 - 3)/2, tr E² = (tr C² - 2 I_1 + 3)/4."""
+    """lambda/2 (tr E)² + mu tr E² with 2 tr E = I_1 - 3 and 4 tr E² = tr C² - 2 I_1 + 3, C = UᵀU."""
     C = U.T @ U
     first = np.trace(C)
     square = np.sum(C * C)
