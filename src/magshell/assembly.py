@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
 
-from magshell.arrays import AnyArray, FloatArray, IntArray
+from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.materials.law import strain_energy
 from magshell.model import Model
-from magshell.nodal import COLUMNS, COMPONENTS, width
+from magshell.nodal import COLUMNS, COMPONENTS
+from magshell.numbering import columns_of, pattern_of, whole
 from magshell.shell import loops, rotation
 from magshell.shell.bubble import held_energy, hold
 from magshell.shell.element import Layout
@@ -60,15 +60,6 @@ class Assembly(NamedTuple):
     def worst(self) -> tuple[str, float]:
         """Kind with the largest relative residual, and that."""
         return max(self.relative.items(), key=lambda item: item[1])
-
-
-@dataclass(frozen=True)
-class Pattern:
-    """Sparsity of the tangent, compressed columns, equations in elimination order."""
-
-    indptr: IntArray
-    indices: IntArray
-    dofs: int
 
 
 class Discretisation:
@@ -134,7 +125,7 @@ class Discretisation:
     def _number_equations(self, ordering: Ordering) -> None:
         mesh, constraints = self.mesh, self.model.constraints
         nodes, per_element = len(mesh.points), mesh.elements.shape[1]
-        carried = _columns(self.model.shell.carriers)
+        carried = columns_of(self.model.shell.carriers)
         free = carried & ~constraints.fixed
         self.carried, self.free = carried, free
         incidence = sp.csr_array(
@@ -152,7 +143,7 @@ class Discretisation:
         first[order] = np.cumsum(counts[order]) - counts[order]
         rank = np.cumsum(free, axis=1) - 1
         number = np.where(free, first[:, None] + rank, -1)
-        self.pattern, row_offset = _pattern(graph, order, counts)
+        self.pattern, row_offset = pattern_of(graph, order, counts)
         layout = self.body.layout
         carrying = [layout.u] * 3 + [layout.w] * 3 + [layout.phi] + [layout.q] * 3
         local_node = np.concatenate([np.arange(count) for count in carrying])
@@ -169,7 +160,7 @@ class Discretisation:
             local_component.astype(np.int64),
             number,
             rank,
-            _whole(free, mesh.elements, carrying),
+            whole(free, mesh.elements, carrying),
             self.pattern.indptr,
             offset,
             np.ascontiguousarray(constraints.frame_of),
@@ -417,41 +408,6 @@ class Discretisation:
         values = nodal.copy()
         values[self._mid_sides] = nodal[self._mid_side_ends].mean(axis=1)
         return values
-
-
-def _whole(free: AnyArray, elements: IntArray, carrying: list[int]) -> AnyArray:
-    """Nodes (nodes,) of which every component that the elements give values to is free."""
-    valued = np.zeros_like(free)
-    for column, count in enumerate(carrying):
-        valued[elements[:, :count], column] = True
-    return (free == valued).all(axis=1)
-
-
-def _columns(carriers: dict[str, AnyArray]) -> AnyArray:
-    """Which nodes have which columns of the nodal arrays: boolean (nodes, 10)."""
-    return np.column_stack([carriers[field] for field in COLUMNS for _ in range(width(field))])
-
-
-def _pattern(graph: sp.csr_array, order: IntArray, counts: IntArray) -> tuple[Pattern, sp.csr_array]:
-    """Pattern of the matrix, and for node pairs (column, row) one plus the row's offset in the column."""
-    nodes = len(order)
-    ordered = sp.csr_array(graph[order][:, order])
-    ordered.sort_indices()
-    block = counts[order]
-    lengths = block[ordered.indices]
-    ends = np.cumsum(lengths)
-    starts = ends - lengths
-    column_start = np.append(starts, ends[-1] if len(ends) else 0)[ordered.indptr]
-    within = starts - np.repeat(column_start[:-1], np.diff(ordered.indptr))
-    coordinates = (order[np.repeat(np.arange(nodes), np.diff(ordered.indptr))], order[ordered.indices])
-    row_offset = sp.csr_array(sp.coo_array((within + 1, coordinates), shape=graph.shape))
-    first_equation = np.cumsum(block) - block
-    rows = np.repeat(first_equation[ordered.indices] - starts, lengths) + np.arange(ends[-1])
-    node_of_column = np.repeat(np.arange(nodes), block)
-    column_length = np.diff(column_start)[node_of_column]
-    indptr = np.append(0, np.cumsum(column_length))
-    index = np.arange(indptr[-1]) + np.repeat(column_start[node_of_column] - indptr[:-1], column_length)
-    return Pattern(indptr, rows[index].astype(np.int32), len(node_of_column)), row_offset
 
 
 def _check_thickness(shifts: FloatArray) -> None:
