@@ -76,7 +76,7 @@ class Runs:
     @property
     def cpu(self) -> float:
         """CPU time of all runs in the store, s."""
-        return sum(run["cpu"] for run in self.store.entries.values())
+        return sum(entry["cpu"] for entry in self.store.entries.values() if isinstance(entry, dict))
 
 
 def name_of(specimen: Any) -> str:
