@@ -14,7 +14,7 @@ from magshell.output.style import COLOURS, PALE
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-ETAS = (0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0)
+ETAS = (0.01, 0.03, 0.1, 0.3, 1.0, 10.0, 100.0)
 LENGTHS = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0)
 USUAL = 0.1
 SAMPLES: dict[str, Divisions] = {"strip-10": (15, 3), "strip-41": (20, 2), "thin-cross": (2, 2)}
@@ -51,7 +51,7 @@ def _table(symbol: str, values: tuple[float, ...], lines: dict[tuple[str, float]
 
 def _picture(lines: dict[str, dict[tuple[str, float], list[float]]]) -> Figure:
     new = figure((13.0, 5.2))
-    panels = new.subplots(1, 2, sharey=True)
+    panels = new.subplots(1, 2)
     for axes, parameter, values, label in zip(
         panels, lines, (ETAS, LENGTHS), (r"coupling modulus  $\eta/\mu$", "length scale  $l/h$"), strict=True
     ):
@@ -66,9 +66,8 @@ def _picture(lines: dict[str, dict[tuple[str, float], list[float]]]) -> Figure:
                 marker="o" if low else "s", markersize=5, markerfacecolor=colour if low else "white",
                 label=f"{name}, {field:g} mT",
             )  # fmt: skip
-        axes.set_ylim(-60.0, 30.0)
     panels[0].set_ylabel("change of the displacement (%)", **LABEL)
     panels[0].set_title(r"$l = h/10$", **TEXT)
     panels[1].set_title(r"$\eta = \mu/10$", **TEXT)
-    panels[0].legend(**LEGEND)
+    panels[1].legend(loc="lower left", **LEGEND)
     return new

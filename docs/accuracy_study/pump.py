@@ -169,17 +169,15 @@ def _steep(runs: Runs) -> tuple[str, Figure]:
             dress(axes, "field (mT)", r"$|u_1|$ at B (mm)")
             axes.plot(fields, values, color=COLOURS[place], marker=".", markersize=6, linewidth=1.5, label=words)
         turns = [f"{fields[at]:.2f}" for at in _turns(fields)]
-        jump = int(np.argmax(np.diff(values)))
-        largest = f"{values[jump]:.2f} to {values[jump + 1]:.2f} mm near {fields[jump]:.1f} mT"
         end = "reached" if not run.reason else f"stops at {fields[-1]:.2f} mT"
-        rows.append((words, ", ".join(turns) or "none", largest, str(len(fields) - 1), str(run.cuts), end))
+        rows.append((words, ", ".join(turns) or "none", str(len(fields) - 1), str(run.cuts), end))
     whole.set_xlim(0.0, STEEP[-1])
-    whole.set_ylim(0.0, 12.0)
+    whole.set_ylim(0.0, 15.0)
     near.set_xlim(31.0, 37.0)
     near.set_ylim(7.0, 10.6)
     whole.legend(loc="upper left", **LEGEND)
-    header = ("Pump", "Turns at (mT)", "Largest step", "Steps", "Cuts", "End")
-    return table(header, rows, 3), new
+    header = ("Pump", "Turns at (mT)", "Steps", "Cuts", "End")
+    return table(header, rows, 2), new
 
 
 def _turns(fields: np.ndarray) -> np.ndarray:
