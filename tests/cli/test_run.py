@@ -17,6 +17,7 @@ import numpy as np
 import problem_files
 import pytest
 from problem_files import changed
+from processes import hear_ctrl_c
 from rich.console import Console
 
 from magshell import problem
@@ -125,7 +126,8 @@ def test_interrupt_key(tmp_path: Path) -> None:
     """Ctrl-C in the middle of a long run, with the process's own signal handling."""
     out = tmp_path / "out"
     command = [sys.executable, "-m", "magshell", "run", "hollow-cross", "--out", str(out)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    with subprocess.Popen(command, **pipes, text=True, preexec_fn=hear_ctrl_c) as process:
         end = time.monotonic() + 300
         while not ((out / "history.csv").exists() and len(rows(out)) > 2):
             assert process.poll() is None, process.stderr and process.stderr.read()

@@ -11,6 +11,7 @@ import time
 from typing import NamedTuple
 
 import pytest
+from processes import hear_ctrl_c
 
 from magshell import Path, solve
 from magshell.problem.building import build
@@ -39,7 +40,7 @@ def interrupted(tmp_path_factory: pytest.TempPathFactory) -> Interrupted:
     (directory / "mine.png").write_bytes(b"of the user")
     process = subprocess.Popen(
         [sys.executable, "-u", "-m", "magshell", "reproduce", "pump", "thin-cross", "--out", str(directory)],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True, preexec_fn=_hear_ctrl_c,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True, preexec_fn=hear_ctrl_c,
     )  # fmt: skip
     assert process.stdout is not None
     lines = []
@@ -53,11 +54,6 @@ def interrupted(tmp_path_factory: pytest.TempPathFactory) -> Interrupted:
     return Interrupted(
         directory, process.returncode, "".join(lines) + rest, errors, time.monotonic() - asked, _lives(process.pid)
     )
-
-
-def _hear_ctrl_c() -> None:
-    """A shell that runs the tests in the background has its children ignore it."""
-    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def _lives(group: int, seconds: float = 5.0) -> bool:

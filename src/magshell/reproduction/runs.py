@@ -81,7 +81,7 @@ def solve_all(
     try:
         for group in (by_size[:1], by_size[:0:-1]):
             try:
-                with _interrupts_ignored():
+                with _interrupts_wait():
                     names = {executor.submit(_run, name, files[name]): name for name in group}
             except BrokenExecutor as error:
                 yield from (Outcome(name, None, _words(error)) for name in group)
@@ -122,16 +122,16 @@ def _cores() -> int:
 
 
 @contextmanager
-def _interrupts_ignored() -> Iterator[None]:
-    """Processes started here inherit that Ctrl-C is ignored: only the parent is to react, and it tells them."""
-    if threading.current_thread() is not threading.main_thread():
+def _interrupts_wait() -> Iterator[None]:
+    """Ctrl-C is held back while processes are started, and they never hear it: the parent reacts and tells them."""
+    if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    previous = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    previous = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, previous)
+        signal.pthread_sigmask(signal.SIG_SETMASK, previous)
 
 
 def _listen(messages: Any, watch: Watcher) -> None:
