@@ -43,7 +43,7 @@ def operations(element: ElementType, levels: int = LEVELS) -> int:
     Contractions with the shape functions (rows × terms × columns, twice), moduli on the legs (four stages of 81 sums
     of three per level), condensation. The point's laws and chain rules come on top and are not counted.
     """
-    points, rest, enhanced = len(element.rule.weights), element.rest_nodes, 3 * len(element.modes)
+    points, rest, enhanced = len(element.rule.weights), element.rest_nodes, 3 * element.vectors
     nodal = 3 * 8 + 6 * rest + element.stretch_nodes
     values = nodal + enhanced
     terms = 3 * 8 * 2 + 3 * rest * 3 + element.stretch_nodes + rest * (4 * 3 + 3 * 4) + 3 * enhanced
