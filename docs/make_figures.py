@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 
 import example_pages
 import numpy as np
+from blocks import write_blocks
 from matplotlib.figure import Figure
 
 import magshell as ms
@@ -31,6 +32,7 @@ from magshell.reproduction.table import Row
 from magshell.reproduction.variants import paper_file, variants
 
 DOCS = pathlib.Path(__file__).parent
+COMMAND = "docs/make_figures.py"
 IMAGES = DOCS / "images"
 MESHES = ((15, 4), (30, 6), (60, 12))
 MESH_FIELDS = (0.02, 1.0, 10.0)
@@ -59,8 +61,8 @@ def main() -> None:
     }
     print("\n\n".join(tables.values()))
     displacements = [row for row in rows if row.unit == "mm" and "largest" not in row.quantity]
-    write_tables(DOCS.parent / "README.md", {"accuracy": accuracy_table(displacements)})
-    write_tables(DOCS / "accuracy.md", tables)
+    write_blocks(DOCS.parent / "README.md", {"accuracy": accuracy_table(displacements)}, COMMAND)
+    write_blocks(DOCS / "accuracy.md", tables, COMMAND)
     for section in sections:
         write_page(section, built_in)
 
@@ -151,16 +153,6 @@ def mesh_table(paths: Paths) -> str:
         values = (f"{at_probe(path, 'B', 3, field):#.4g}" for field in MESH_FIELDS)
         lines.append(f"| {mesh[0]} × {mesh[1]} | {path.discretisation.dofs} | {' | '.join(values)} |")
     return "\n".join(lines)
-
-
-def write_tables(file: pathlib.Path, tables: Mapping[str, str]) -> None:
-    """Put every table between its marks."""
-    text = file.read_text(encoding="utf-8")
-    for name, table in tables.items():
-        begin, end = f"<!-- {name}: docs/make_figures.py -->", f"<!-- end of {name} -->"
-        before, rest = text.split(begin)
-        text = f"{before}{begin}\n{table}\n{end}{rest.split(end)[1]}"
-    write_atomically(file, text.encode())
 
 
 # -- pictures --------------------------------------------------------------------------------------------------------

@@ -14,6 +14,7 @@ import pathlib
 import sys
 from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
+import blocks
 from pydantic_core import PydanticUndefined
 
 import magshell as ms
@@ -275,14 +276,10 @@ def main() -> int:
 
 def filled(page: str) -> str:
     """The page with every block between its marks made anew."""
-    blocks = {name: table(name) for name in TABLES}
-    blocks |= {name: f"```toml\n{examples.text(problem)}```" for name, problem in EXAMPLES.items()}
-    blocks["units"] = units_table()
-    for name, block in blocks.items():
-        begin, end = f"<!-- {name}: docs/make_reference.py -->", f"<!-- end of {name} -->"
-        before, rest = page.split(begin)
-        page = f"{before}{begin}\n{block}\n{end}{rest.split(end)[1]}"
-    return page
+    made = {name: table(name) for name in TABLES}
+    made |= {name: f"```toml\n{examples.text(problem)}```" for name, problem in EXAMPLES.items()}
+    made["units"] = units_table()
+    return blocks.filled(page, made, "docs/make_reference.py")
 
 
 def table(name: str) -> str:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 import pathlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from magshell.output.files import write_atomically
+from blocks import write_blocks
+
 from magshell.output.style import GREY, INK, PALE, TICKS, deliver
 
 if TYPE_CHECKING:
@@ -75,16 +76,6 @@ def dress(axes: Axes, abscissa: str = "", ordinate: str = "") -> Axes:
 
 def write(findings: Findings) -> None:
     """Put tables between their marks and pictures beside the page."""
-    write_tables(PAGE, findings.tables)
+    write_blocks(PAGE, findings.tables, "docs/make_accuracy_study.py")
     for name, picture in findings.pictures.items():
         deliver(picture, DOCS / "images" / f"accuracy-{name}.png")
-
-
-def write_tables(file: pathlib.Path, tables: Mapping[str, str]) -> None:
-    """Put every table between its marks."""
-    text = file.read_text(encoding="utf-8")
-    for name, content in tables.items():
-        begin, end = f"<!-- {name}: docs/make_accuracy_study.py -->", f"<!-- end of {name} -->"
-        before, rest = text.split(begin)
-        text = f"{before}{begin}\n{content}\n{end}{rest.split(end)[1]}"
-    write_atomically(file, text.encode())

@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+from blocks import write_blocks
 
 from element_study.cases import Case, Quantity
 from element_study.convergence import Cost, Series, at_equal_unknowns, cost
-from magshell.output.files import write_atomically
 
 PAGE = pathlib.Path(__file__).parents[1] / "element.md"
 COMMAND = "docs/make_element_study.py"
@@ -124,9 +124,4 @@ def published_table(found: Mapping[str, Mapping[str, float]], pairs: Sequence[Pa
 
 def write(tables: Mapping[str, str]) -> None:
     """Put every table between its marks on the page."""
-    text = PAGE.read_text(encoding="utf-8")
-    for name, content in tables.items():
-        begin, end = f"<!-- {name}: {COMMAND} -->", f"<!-- end of {name} -->"
-        before, rest = text.split(begin)
-        text = f"{before}{begin}\n{content}\n{end}{rest.split(end)[1]}"
-    write_atomically(PAGE, text.encode())
+    write_blocks(PAGE, tables, COMMAND)
