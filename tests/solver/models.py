@@ -73,6 +73,20 @@ def equation_numbers(discretisation: Discretisation) -> np.ndarray:
     return discretisation.expand(np.arange(1.0, discretisation.dofs + 1.0)).astype(int) - 1
 
 
+def central_difference(discretisation: Discretisation, state: State, increment: np.ndarray, step: float) -> np.ndarray:
+    """Minus the derivative of the right side (dofs,) at load factor 1 along an increment (nodes, 10) of size `step`.
+
+    The enhanced parameters follow, as the condensed tangent has it.
+    """
+
+    def right_side(sign: float) -> np.ndarray:
+        discretisation.assemble(state, 1.0)
+        moved = state.moved(sign * increment, discretisation.recover(sign * increment))
+        return discretisation.assemble(moved, 1.0).right_side
+
+    return (right_side(-1.0) - right_side(1.0)) / (2 * step)
+
+
 class Record(Observer):
     """Names of the calls in order, their arguments, and the bytes of every converged state."""
 

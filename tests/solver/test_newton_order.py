@@ -21,7 +21,7 @@ from magshell.magnetics import laws
 from magshell.shell.elements import ELEMENTS
 from magshell.shell.state import State
 from magshell.solver.newton import Trial, newton
-from solver.models import arm, equation_numbers, strip
+from solver.models import arm, central_difference, equation_numbers, strip
 
 BEGIN = 0.2
 SHARP = 1e-13
@@ -113,18 +113,13 @@ def test_tangent_of_the_free_rotations_at_the_end(model: ms.Model) -> None:
     discretisation, state = path.discretisation, path.steps[-1].state
     tip, step = model.probe_nodes["tip"], 1e-6
 
-    def right_side(increment: np.ndarray) -> np.ndarray:
-        discretisation.assemble(state, 1.0)
-        moved = state.moved(increment, discretisation.recover(increment))
-        return discretisation.assemble(moved, 1.0).right_side
-
     matrix = discretisation.assemble(state, 1.0).matrix.toarray()
     scale = np.sqrt(np.abs(matrix.diagonal()))
     equations = equation_numbers(discretisation)[tip]
     for component in (7, 9):
         increment = np.zeros((len(model.shell.mesh.points), 10))
         increment[tip, component] = step
-        numeric = (right_side(-increment) - right_side(increment)) / (2 * step)
+        numeric = central_difference(discretisation, state, increment, step)
         equation = equations[component]
         off = np.abs(numeric - matrix[:, equation]) / (scale * scale[equation])
         assert off.max() < 1e-6, (

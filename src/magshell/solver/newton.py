@@ -92,7 +92,7 @@ def newton(
         increment = discretisation.expand(linear_solver.solve(assembly.right_side), trial.imposed)
         d_load = 0.0
         if cylinder is not None:
-            stresses = trial.stresses if settings.mixed_tangent else None
+            stresses = _geometric(trial, settings)
             direction = discretisation.load_direction(trial.state, trial.load_factor, stresses, assembly.residual)
             per_load = discretisation.expand(linear_solver.solve(direction), discretisation.imposed(1.0))
             try:
@@ -121,8 +121,12 @@ def newton(
 
 
 def _assemble(discretisation: Discretisation, trial: Trial, settings: Settings) -> Assembly:
-    stresses = trial.stresses if settings.mixed_tangent else None
-    return discretisation.assemble(trial.state, trial.load_factor, stresses, trial.imposed)
+    return discretisation.assemble(trial.state, trial.load_factor, _geometric(trial, settings), trial.imposed)
+
+
+def _geometric(trial: Trial, settings: Settings) -> Stresses | None:
+    """Stresses of the geometric part; None: the state's own."""
+    return trial.stresses if settings.mixed_tangent else None
 
 
 def _inverted(inverted: InvertedElement) -> str:
