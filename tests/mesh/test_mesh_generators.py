@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from isoparametric import area, edge_lengths, quadrature
 
 from magshell.errors import InputError
-from magshell.mesh import cylinder, rectangle, sphere_patch
+from magshell.mesh import annulus, cylinder, rectangle, sphere_patch
 
 lengths = st.floats(1e-3, 1e3)
 counts = st.integers(1, 5)
@@ -70,6 +70,49 @@ def test_middles_of_a_rectangle_follow_its_corners():
     mesh = rectangle(3.0, 2.0, (3, 2))
     corners, middles = mesh.points[mesh.elements[:, :4]], mesh.points[mesh.elements[:, 4:]]
     assert middles == pytest.approx(0.5 * (corners + np.roll(corners, -1, axis=1)))
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    inner=lengths,
+    ratio=st.floats(1.1, 20),
+    across=counts,
+    around=st.integers(3, 9),
+    start=st.floats(-180, 180),
+    span=st.floats(20, 300) | st.just(360.0),
+    slit=st.booleans(),
+)
+def test_annulus_is_flat_round_and_named(inner, ratio, across, around, start, span, slit):
+    outer, slit = inner * ratio, slit and span == 360
+    mesh = annulus(inner, outer, (across, around), (start, start + span), slit=slit)
+    assert (mesh.points[:, 2] == 0).all()
+    normals = quadrature(mesh, 2)[1]
+    assert (normals[:, :, 2] > 0).all()
+    radius = np.hypot(*mesh.points[:, :2].T)
+    closed = span == 360 and not slit
+    assert characteristic(mesh) == (0 if closed else 1)
+    assert len(mesh.boundary_edges) == 2 * around + (0 if closed else 2 * across)
+    assert_groups_cover_the_boundary(mesh)
+    assert_node_count(mesh)
+    assert radius[mesh.nodes_of("inner")] == pytest.approx(inner, rel=1e-12)
+    assert radius[mesh.nodes_of("outer")] == pytest.approx(outer, rel=1e-12)
+    assert ("start" in mesh.groups) != closed
+    if not closed:
+        gap = 0.0
+        for name, turn in (("start", start), ("stop", start + span)):
+            nodes = mesh.nodes_of(name)
+            ray = radius[nodes, None] * [[math.cos(math.radians(turn)), math.sin(math.radians(turn))]]
+            gap = np.abs(mesh.points[nodes, :2] - ray).max() / radius[nodes].max()
+            if name == "start" or not slit:
+                assert gap < 1e-9, (name, gap)
+        assert not slit or 0 < gap < 2.1e-3 * 2 * math.pi / around + 6e-6 * ratio, gap
+
+
+def test_annulus_numbers_across_first_and_turns_from_x1_to_x2():
+    mesh = annulus(1.0, 3.0, (2, 1), angle=(0, 90))
+    corners = mesh.points[mesh.elements[:, :4], :2]
+    assert corners[0] == pytest.approx(np.array([[1, 0], [2, 0], [0, 2], [0, 1]]))
+    assert corners[1] == pytest.approx(np.array([[2, 0], [3, 0], [0, 3], [0, 2]]))
 
 
 vectors = st.tuples(*[st.floats(-1, 1)] * 3).filter(lambda v: np.linalg.norm(v) > 0.1)
@@ -165,6 +208,7 @@ def test_sphere_patch_puts_left_at_the_first_azimuth():
 @pytest.mark.parametrize(
     ("make", "exact"),
     [
+        (lambda n: annulus(2.0, 3.0, (n, 3 * n)), 5 * math.pi),
         (lambda n: cylinder(2.0, 3.0, (3 * n, n)), 2 * math.pi * 2 * 3),
         (lambda n: cylinder(2.0, 3.0, (2 * n, n), angle=(-30, 110)), math.radians(140) * 2 * 3),
         (
@@ -176,7 +220,7 @@ def test_sphere_patch_puts_left_at_the_first_azimuth():
             4 * math.radians(360) * math.cos(math.radians(20)),
         ),
     ],
-    ids=["tube", "sector", "patch", "zone"],
+    ids=["ring", "tube", "sector", "patch", "zone"],
 )
 def test_area_converges_at_fourth_order(make, exact):
     errors = [abs(area(make(n)) / exact - 1) for n in (2, 4, 8, 16)]
@@ -193,6 +237,12 @@ def test_area_converges_at_fourth_order(make, exact):
         (lambda: rectangle(1, 1, (0, 1)), ["rectangle: elements = (0, 1)", "at least 1"]),
         (lambda: rectangle(1, 1, (1.5, 1)), ["rectangle: elements = (1.5, 1)", "whole"]),
         (lambda: rectangle(1, 1, 4), ["rectangle: elements = 4", "two whole numbers"]),
+        (lambda: annulus(0, 1, (1, 4)), ["annulus: inner_radius = 0", "positive"]),
+        (lambda: annulus(1, 0.5, (1, 4)), ["annulus: outer_radius = 0.5", "exceed inner_radius = 1"]),
+        (lambda: annulus(1, 2, (0, 4)), ["annulus: elements = (0, 4)", "at least 1"]),
+        (lambda: annulus(1, 2, (1, 2)), ["annulus: elements = 2", "angle", "at least 3 elements"]),
+        (lambda: annulus(1, 2, (1, 4), angle=(0, 400)), ["annulus: angle = (0, 400)", "at most 360"]),
+        (lambda: annulus(1, 2, (1, 4), angle=(0, 90), slit=True), ["slit is for a whole ring", "(0, 90)"]),
         (lambda: cylinder(0, 1, (4, 1)), ["cylinder: radius = 0", "positive"]),
         (lambda: cylinder(1, math.inf, (4, 1)), ["cylinder: length = inf", "positive"]),
         (lambda: cylinder(1, 1, (4, 1), angle=(0, 361)), ["cylinder: angle = (0, 361)", "at most 360"]),

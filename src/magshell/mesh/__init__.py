@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from magshell.mesh.generators import cylinder, rectangle, sphere_patch
+from magshell.mesh.generators import annulus, cylinder, rectangle, sphere_patch
 from magshell.mesh.mesh import Mesh
 from magshell.mesh.multiblock import blocks
 
-__all__ = ["Mesh", "blocks", "cylinder", "rectangle", "sphere_patch"]
+__all__ = ["Mesh", "annulus", "blocks", "cylinder", "rectangle", "sphere_patch"]

@@ -8,8 +8,10 @@ import numpy as np
 
 from magshell.errors import InputError
 from magshell.mesh.arguments import angles, direction, divisions, number_pair, positive, whole_turn
+from magshell.mesh.geometry import COINCIDENT
 from magshell.mesh.grid import grid
 from magshell.mesh.mesh import Mesh
+from magshell.mesh.unmatched import ON_EDGE
 
 
 def rectangle(length: float, width: float, elements: Sequence[int]) -> Mesh:
@@ -36,6 +38,66 @@ def rectangle(length: float, width: float, elements: Sequence[int]) -> Mesh:
     pattern = grid(*divisions("rectangle", elements))
     points = np.pad(pattern.parameters * extent, ((0, 0), (0, 1)))
     names = {"left": (0, 0.0), "right": (0, 1.0), "bottom": (1, 0.0), "top": (1, 1.0)}
+    return Mesh(points, pattern.elements, edge_groups=pattern.sides(names))
+
+
+def annulus(
+    inner_radius: float,
+    outer_radius: float,
+    elements: Sequence[int],
+    angle: Sequence[float] = (0.0, 360.0),
+    slit: bool = False,
+) -> Mesh:
+    """Flat ring about X3 in the plane X1-X2, or a sector of one, with the normal +X3.
+
+    Parameters
+    ----------
+    inner_radius, outer_radius : float
+        m.
+    elements : (int, int)
+        Number of elements from the inner to the outer edge and around.
+    angle : (float, float)
+        Start and stop in degrees from +X1 towards +X2. A span of 360 makes a whole ring, welded.
+    slit : bool
+        Whether a whole ring is cut open at the start. The side of the stop then ends short of it by twice the
+        distance that a mesh tells apart, about 2e-3 of an element at the inner edge.
+
+    Returns
+    -------
+    Mesh
+        With the edge groups inner and outer and, of a sector or a slit ring, start and stop.
+
+    Raises
+    ------
+    InputError
+        Radii that are not positive or do not rise, numbers of elements below 1, angles that do not rise or span
+        more than 360 degrees, elements of more than 120 degrees, a slit in a sector.
+    """
+    inner = positive("annulus", "inner_radius", inner_radius)
+    outer = positive("annulus", "outer_radius", outer_radius)
+    if outer <= inner:
+        raise InputError(
+            f"annulus: outer_radius = {outer_radius!r} is not allowed; it must exceed inner_radius = {inner_radius!r}."
+        )
+    across, around = divisions("annulus", elements)
+    start, stop = angles("annulus", "angle", angle, around)
+    whole = whole_turn(start, stop)
+    if slit and not whole:
+        raise InputError(
+            f"annulus: slit is for a whole ring; angle = {angle!r} makes a sector, which is open as it is."
+        )
+    span = np.radians(stop - start)
+    if slit:
+        shortest = min((outer - inner) / across, inner * span / around)
+        span -= 2.0 * max(ON_EDGE * shortest, COINCIDENT * 2.0**1.5 * outer) / inner
+    closed = whole and not slit
+    pattern = grid(across, around, closed=1 if closed else None)
+    radius = inner + (outer - inner) * pattern.parameters[:, 0]
+    turn = np.radians(start) + span * pattern.parameters[:, 1]
+    points = np.stack([radius * np.cos(turn), radius * np.sin(turn), np.zeros_like(turn)], axis=1)
+    names = {"inner": (0, 0.0), "outer": (0, 1.0)}
+    if not closed:
+        names |= {"start": (1, 0.0), "stop": (1, 1.0)}
     return Mesh(points, pattern.elements, edge_groups=pattern.sides(names))
 
 
