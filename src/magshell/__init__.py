@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from magshell import mesh, problem
     from magshell.errors import InputError, MeshError, SolveError
-    from magshell.loads import Force, Moment
+    from magshell.loads import Force, Gravity, Moment, Pressure, Traction
     from magshell.magnetics import (
         DeformationGradientEnergy,
         MicropolarCouple,
@@ -28,7 +28,7 @@ __version__ = "0.1.0"
 
 _HOME = {
     "magshell.errors": ("InputError", "MeshError", "SolveError"),
-    "magshell.loads": ("Force", "Moment"),
+    "magshell.loads": ("Force", "Gravity", "Moment", "Pressure", "Traction"),
     "magshell.magnetics": (
         "DeformationGradientEnergy",
         "MicroRotationEnergy",
@@ -47,6 +47,7 @@ __all__ = [
     "Clamp",
     "DeformationGradientEnergy",
     "Force",
+    "Gravity",
     "InputError",
     "MeshError",
     "MicroRotationEnergy",
@@ -59,12 +60,14 @@ __all__ = [
     "Observer",
     "Path",
     "Prescribe",
+    "Pressure",
     "Settings",
     "Shell",
     "SimpleSupport",
     "SolveError",
     "Step",
     "SymmetryPlane",
+    "Traction",
     "UniformField",
     "mesh",
     "problem",

@@ -1,0 +1,48 @@
+"""Forces that stay what they are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from magshell.arrays import FloatArray
+from magshell.loads.load import Pairs
+from magshell.nodal import COLUMNS, COMPONENTS
+from magshell.shell.state import State
+
+
+def nodal(field: str, vectors: FloatArray) -> FloatArray:
+    """Nodal columns (nodes, 10) with these vectors (nodes, 3) on one field."""
+    columns = np.zeros((len(vectors), COMPONENTS))
+    columns[:, COLUMNS[field]] = vectors
+    return columns
+
+
+@dataclass(frozen=True, eq=False)
+class DeadForces:
+    """Constant forces on the displacements; their potential is minus forces · u.
+
+    Attributes
+    ----------
+    on_u : ndarray, shape (nodes, 3)
+        N.
+    """
+
+    on_u: FloatArray
+
+    @property
+    def conservative(self) -> bool:
+        return True
+
+    @property
+    def pairs(self) -> Pairs | None:
+        return None
+
+    def forces(self, state: State) -> FloatArray:
+        """The same at every state."""
+        return nodal("u", self.on_u)
+
+    def stiffness(self, state: State) -> FloatArray:
+        """None."""
+        return np.zeros((0, 3, 3))

@@ -1,0 +1,94 @@
+r"""A force with a total over a group, dead or turning with the micro-rotation.
+
+One that follows is R̃_I F_I at node I, with the node's share F_I of the total. A spin ϑ changes it by ϑ × R̃_I F_I, so
+that the tangent gets [R̃_I F_I]× at (u, ω). No potential has that: nothing of it is at (ω, u).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from magshell.arrays import FloatArray
+from magshell.errors import InputError
+from magshell.loads.checks import keep_history, located, vector
+from magshell.loads.cross import cross_matrix
+from magshell.loads.dead import DeadForces, nodal
+from magshell.loads.distribution import shares
+from magshell.loads.load import Applied, Pairs
+from magshell.shell import rotation
+from magshell.shell.state import State
+
+if TYPE_CHECKING:
+    from magshell.model import Shell
+
+
+@dataclass(frozen=True, eq=False)
+class Force:
+    """A force on the displacements of a group.
+
+    Parameters
+    ----------
+    group : str
+        A group of nodes, which share it equally, of edges, along whose undeformed length it is uniform, or of elements,
+        over whose undeformed area it is uniform.
+    total : array_like, shape (3,)
+        N.
+    follower : bool, optional
+        Whether it turns with the micro-rotations of its nodes; those without share none of it. By default it is dead:
+        it keeps its direction.
+    history : sequence of float, optional
+        Multiplier at the end of each stage; by default 1 at the end of the first and from then on.
+    """
+
+    kind: ClassVar[str] = "force"
+
+    group: str
+    total: ArrayLike
+    follower: bool = False
+    history: Sequence[float] | None = None
+
+    def __post_init__(self) -> None:
+        keep_history(self)
+
+    def applied(self, shell: Shell, normals: FloatArray) -> Applied:
+        """The load on a mesh."""
+        with located(self):
+            if self.follower and not shell.micro_rotation:
+                raise InputError(
+                    "a follower turns with the micro-rotation, which this shell does not have; leave follower out"
+                )
+            parts = shares(shell, self.group, "omega" if self.follower else "u")
+            on_u = parts[:, None] * vector("total", self.total)
+        return _TurningForces(on_u) if self.follower else DeadForces(on_u)
+
+
+@dataclass(frozen=True, eq=False)
+class _TurningForces:
+    """Forces (nodes, 3) of the unrotated nodes, N."""
+
+    unrotated: FloatArray
+
+    @property
+    def conservative(self) -> bool:
+        return False
+
+    @property
+    def pairs(self) -> Pairs:
+        nodes = np.flatnonzero(np.any(self.unrotated, axis=1))
+        return Pairs("u", "omega", nodes, nodes)
+
+    def _turned(self, state: State) -> FloatArray:
+        return np.einsum("nij,nj->ni", rotation.matrix(state.q), self.unrotated)
+
+    def forces(self, state: State) -> FloatArray:
+        """R̃ F on u."""
+        return nodal("u", self._turned(state))
+
+    def stiffness(self, state: State) -> FloatArray:
+        """[R̃ F]×."""
+        return cross_matrix(self._turned(state)[self.pairs.rows])

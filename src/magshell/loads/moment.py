@@ -1,0 +1,146 @@
+r"""A moment with a total over a group, on the micro-rotations or, without them, on the directors.
+
+On the micro-rotation it is a couple c_I on the spin of node I, dead (its axis and magnitude stay) or turning with the
+node, c_I = R̃_I C_I. `Applied.stiffness` derives both tangents from the chart, -[c_I]×/2 and +[c_I]×/2. Neither is
+symmetric: a couple about a fixed axis, or about one fixed to a body, has no potential, except in rotations about it.
+
+A shell without micro-rotation turns with its director d = D + w: δd = δω × d leaves for the rotation, but for the drill
+about d itself, δω = d × δd / |d|², and the work of a moment M about an axis fixed in space is
+
+    M · δω = f · δw,   f = M × d / |d|²,   df/dd = [M]× (I - 2 n ⊗ n) / |d|²,   n = d/|d|.
+
+In bending (M normal to d) these are opposite forces on the two faces that turn with the section, through any number of
+turns. What M has along d does no work: a director does not feel its own drill. Shares of the nodes are taken without
+regard to that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from magshell.arrays import FloatArray
+from magshell.errors import InputError
+from magshell.loads.checks import keep_history, located, vector
+from magshell.loads.cross import cross_matrix
+from magshell.loads.dead import nodal
+from magshell.loads.distribution import shares
+from magshell.loads.load import Applied, Pairs
+from magshell.shell import rotation
+from magshell.shell.state import State
+
+if TYPE_CHECKING:
+    from magshell.model import Shell
+
+
+@dataclass(frozen=True, eq=False)
+class Moment:
+    """A moment on the micro-rotations of a group; on the directors where the shell has no micro-rotation.
+
+    Parameters
+    ----------
+    group : str
+        A group of nodes, edges or elements, as for `Force`; nodes without rotation get none of it.
+    total : array_like, shape (3,)
+        N m.
+    follower : bool, optional
+        Whether it turns with the micro-rotations of its nodes. By default its axis is fixed in space.
+    history : sequence of float, optional
+        Multiplier at the end of each stage; by default 1 at the end of the first and from then on.
+    """
+
+    kind: ClassVar[str] = "moment"
+
+    group: str
+    total: ArrayLike
+    follower: bool = False
+    history: Sequence[float] | None = None
+
+    def __post_init__(self) -> None:
+        keep_history(self)
+
+    def applied(self, shell: Shell, normals: FloatArray) -> Applied:
+        """The load on a mesh."""
+        with located(self):
+            if self.follower and not shell.micro_rotation:
+                raise InputError(
+                    "a follower turns with the micro-rotation, which this shell does not have; leave follower out: "
+                    "the moment then works on the director, about an axis fixed in space"
+                )
+            parts = shares(shell, self.group, "omega" if shell.micro_rotation else "w")
+            moments = parts[:, None] * vector("total", self.total)
+        if not shell.micro_rotation:
+            return _DirectorMoments(moments, normals)
+        return _TurningCouples(moments) if self.follower else _DeadCouples(moments)
+
+
+@dataclass(frozen=True, eq=False)
+class _Moments:
+    """Moments (nodes, 3), N m."""
+
+    moments: FloatArray
+
+    @property
+    def conservative(self) -> bool:
+        return False
+
+    def _pairs(self, field: str) -> Pairs:
+        nodes = np.flatnonzero(np.any(self.moments, axis=1))
+        return Pairs(field, field, nodes, nodes)
+
+
+class _DeadCouples(_Moments):
+    @property
+    def pairs(self) -> Pairs:
+        return self._pairs("omega")
+
+    def forces(self, state: State) -> FloatArray:
+        """The same at every state."""
+        return nodal("omega", self.moments)
+
+    def stiffness(self, state: State) -> FloatArray:
+        """-[c]×/2."""
+        return -0.5 * cross_matrix(self.moments[self.pairs.rows])
+
+
+class _TurningCouples(_Moments):
+    @property
+    def pairs(self) -> Pairs:
+        return self._pairs("omega")
+
+    def _turned(self, state: State) -> FloatArray:
+        return np.einsum("nij,nj->ni", rotation.matrix(state.q), self.moments)
+
+    def forces(self, state: State) -> FloatArray:
+        """c = R̃ C on the spin."""
+        return nodal("omega", self._turned(state))
+
+    def stiffness(self, state: State) -> FloatArray:
+        """[c]×/2."""
+        return 0.5 * cross_matrix(self._turned(state)[self.pairs.rows])
+
+
+@dataclass(frozen=True, eq=False)
+class _DirectorMoments(_Moments):
+    normals: FloatArray
+
+    @property
+    def pairs(self) -> Pairs:
+        return self._pairs("w")
+
+    def forces(self, state: State) -> FloatArray:
+        """M × d / |d|² on w."""
+        d = self.normals + state.w
+        return nodal("w", np.cross(self.moments, d) / np.sum(d * d, axis=1, keepdims=True))
+
+    def stiffness(self, state: State) -> FloatArray:
+        """-[M]× (I - 2 n ⊗ n) / |d|²."""
+        nodes = self.pairs.rows
+        d = self.normals[nodes] + state.w[nodes]
+        square = np.sum(d * d, axis=1)[:, None, None]
+        reflection = np.eye(3) - 2.0 * d[:, :, None] * d[:, None, :] / square
+        return -cross_matrix(self.moments[nodes]) @ reflection / square

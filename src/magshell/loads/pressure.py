@@ -1,0 +1,112 @@
+r"""A pressure that stays normal to the deformed surface.
+
+On the mid-surface x = Σ N_I x_I with a_α = x,α it has, per unit parent area, the force p a_1 × a_2, so that
+
+    F_I = p ∫ N_I a_1 × a_2,     K_IJ = -∂F_I/∂u_J = p ∫ N_I [N_J,1 a_2 - N_J,2 a_1]×.
+
+The functions are those of u on the element's nodes (the bubble that an element type may add has no part: the loaded
+surface is that through the nodes). They are of degree 2 in ξ and in η, so the integrands are of degree 5, and 3 × 3
+points are exact: the sum of the forces, and of their moments at the deformed nodes, is that of the surface to round-off.
+
+The load is conservative on a closed surface, where F_I = ∂(p V)/∂x_I with the enclosed volume V; over any group,
+the variation of p/3 ∫ x · a_1 × a_2 has a further term, p/3 ∮ (x × δx) · dx along the rim. So the tangent is
+symmetric but for pairs of nodes of the rim, and wholly where these are held. (Hibbitt, Int. J. Numer. Methods Engrg.
+14, 1979; Schweizerhof and Ramm, Comput. Struct. 18, 1984.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from magshell.arrays import FloatArray, IntArray
+from magshell.loads.checks import keep_history, located, number
+from magshell.loads.cross import cross_matrix
+from magshell.loads.dead import nodal
+from magshell.loads.load import Applied, Pairs
+from magshell.mesh.edges import find_edges
+from magshell.shell.shape_functions import gauss_legendre
+from magshell.shell.state import State
+
+if TYPE_CHECKING:
+    from magshell.model import Shell
+
+POINTS = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Pressure:
+    """A pressure on the mid-surface, normal to it as it deforms and per deformed area.
+
+    Parameters
+    ----------
+    group : str
+        A group of elements.
+    pressure : float
+        Pa; positive pushes along the director, to the side that the mesh's normal points to.
+    history : sequence of float, optional
+        Multiplier at the end of each stage; by default 1 at the end of the first and from then on.
+    """
+
+    kind: ClassVar[str] = "pressure"
+
+    group: str
+    pressure: float
+    history: Sequence[float] | None = None
+
+    def __post_init__(self) -> None:
+        keep_history(self)
+
+    def applied(self, shell: Shell, normals: FloatArray) -> Applied:
+        """The load on a mesh; conservative where the group is a closed surface (see the module on the others)."""
+        with located(self):
+            elements = shell.mesh.elements[shell.mesh.elements_of(self.group)]
+            pressure = number("pressure", self.pressure)
+        parent, weights = gauss_legendre(POINTS)
+        functions = shell.element.functions(8, parent, shell.mesh.points[elements])
+        return _Pressing(
+            shell.mesh.points,
+            elements,
+            pressure * weights[:, None] * functions.values,
+            np.asarray(functions.derivatives),
+            not find_edges(elements).boundary.size,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class _Pressing:
+    """Points (nodes, 3), elements (e, 8), weighted functions (e, p, 8), N, and derivatives (e, p, 2, 8)."""
+
+    points: FloatArray
+    elements: IntArray
+    weighted: FloatArray
+    derivatives: FloatArray
+    conservative: bool
+
+    @property
+    def pairs(self) -> Pairs:
+        return Pairs("u", "u", np.repeat(self.elements, 8, axis=1).ravel(), np.tile(self.elements, 8).ravel())
+
+    def _base(self, state: State) -> tuple[FloatArray, FloatArray]:
+        """a_1 and a_2 (e, p, 3)."""
+        x = (self.points + state.u)[self.elements]
+        a = self.derivatives @ x[:, None]
+        return a[:, :, 0], a[:, :, 1]
+
+    def forces(self, state: State) -> FloatArray:
+        """F_I on u."""
+        a_1, a_2 = self._base(state)
+        on_u = np.zeros_like(self.points)
+        np.add.at(on_u, self.elements, np.swapaxes(self.weighted, 1, 2) @ np.cross(a_1, a_2))
+        return nodal("u", on_u)
+
+    def stiffness(self, state: State) -> FloatArray:
+        """K_IJ, J fastest."""
+        a_1, a_2 = self._base(state)
+        N_1, N_2 = self.derivatives[:, :, 0, :, None], self.derivatives[:, :, 1, :, None]
+        arms = N_1 * a_2[:, :, None] - N_2 * a_1[:, :, None]
+        vectors = np.swapaxes(self.weighted, 1, 2) @ arms.reshape(*arms.shape[:2], -1)
+        return cross_matrix(vectors.reshape(-1, 3))
