@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from magshell.arrays import FloatArray
+from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.loads.checks import keep_history, located, vector
 from magshell.loads.cross import cross_matrix
@@ -78,9 +78,12 @@ class _TurningForces:
         return False
 
     @property
+    def _nodes(self) -> IntArray:
+        return np.flatnonzero(np.any(self.unrotated, axis=1))
+
+    @property
     def pairs(self) -> Pairs:
-        nodes = np.flatnonzero(np.any(self.unrotated, axis=1))
-        return Pairs("u", "omega", nodes, nodes)
+        return Pairs("u", "omega", self._nodes, self._nodes)
 
     def _turned(self, state: State) -> FloatArray:
         return np.einsum("nij,nj->ni", rotation.matrix(state.q), self.unrotated)
@@ -91,4 +94,4 @@ class _TurningForces:
 
     def stiffness(self, state: State) -> FloatArray:
         """[R̃ F]×."""
-        return cross_matrix(self._turned(state)[self.pairs.rows])
+        return cross_matrix(self._turned(state)[self._nodes])

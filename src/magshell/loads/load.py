@@ -44,17 +44,10 @@ class Applied(Protocol):
         """Its forces (nodes, 10) in global axes: N on u, N m on w (which is a number), N m on the spin."""
 
     def stiffness(self, state: State) -> FloatArray:
-        """What it adds to the tangent of internal minus external forces at the pairs: (n, 3, 3), global axes.
+        """Minus the derivative of the forces with respect to the increments at the pairs: (n, 3, 3), global axes.
 
-        Rotations are differentiated in the chart ϑ -> exp(ϑ) R̃ of the elements. There the force of a couple c is
-        T(ϑ)ᵀ c with δω = T δϑ, T = I + [ϑ]×/2 + …: the couple takes off its derivative dc/dϑ, and [c]×/2. For a dead
-        couple this leaves -[c]×/2, for one that turns with R̃, where dc = ϑ × c, it leaves +[c]×/2.
-
-        The residual T(ϑ)ᵀ r that this belongs to vanishes with r, so it holds where all three rotations of a node are
-        free. Where some are held, its rows of free rotations have a part of the reaction in them, [r]×/2 of the
-        tangent. It couples two free rotations only where exactly one is held; the loops over elements take it off
-        there, for all of their couples, those which balance the load included. So at such a node [c]×/2 must be added
-        to the block of a couple c (nothing then is left of a dead one).
+        Rotations move by spins ϑ, R̃ -> exp(ϑ) R̃, and couples are those on the spins of the new state: a dead couple
+        has no derivative. That elements differentiate otherwise is the assembly's affair (`magshell.external`).
         """
 
 

@@ -1,8 +1,8 @@
 r"""A moment with a total over a group, on the micro-rotations or, without them, on the directors.
 
 On the micro-rotation it is a couple c_I on the spin of node I, dead (its axis and magnitude stay) or turning with the
-node, c_I = R̃_I C_I. `Applied.stiffness` derives both tangents from the chart, -[c_I]×/2 and +[c_I]×/2. Neither is
-symmetric: a couple about a fixed axis, or about one fixed to a body, has no potential, except in rotations about it.
+node, c_I = R̃_I C_I, so that dc_I = ϑ × c_I: the tangent gets [c_I]×. Neither has a potential: over rotations about
+several axes, the work of a couple about an axis fixed in space or in the body depends on their order.
 
 A shell without micro-rotation turns with its director d = D + w: δd = δω × d leaves for the rotation, but for the drill
 about d itself, δω = d × δd / |d|², and the work of a moment M about an axis fixed in space is
@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from magshell.arrays import FloatArray
+from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.loads.checks import keep_history, located, vector
 from magshell.loads.cross import cross_matrix
@@ -80,7 +80,7 @@ class Moment:
 
 @dataclass(frozen=True, eq=False)
 class _Moments:
-    """Moments (nodes, 3), N m."""
+    """Moments (nodes, 3), N m; those that turn, of the unrotated nodes."""
 
     moments: FloatArray
 
@@ -88,29 +88,29 @@ class _Moments:
     def conservative(self) -> bool:
         return False
 
-    def _pairs(self, field: str) -> Pairs:
-        nodes = np.flatnonzero(np.any(self.moments, axis=1))
-        return Pairs(field, field, nodes, nodes)
+    @property
+    def _nodes(self) -> IntArray:
+        return np.flatnonzero(np.any(self.moments, axis=1))
 
 
 class _DeadCouples(_Moments):
     @property
-    def pairs(self) -> Pairs:
-        return self._pairs("omega")
+    def pairs(self) -> Pairs | None:
+        return None
 
     def forces(self, state: State) -> FloatArray:
         """The same at every state."""
         return nodal("omega", self.moments)
 
     def stiffness(self, state: State) -> FloatArray:
-        """-[c]×/2."""
-        return -0.5 * cross_matrix(self.moments[self.pairs.rows])
+        """None."""
+        return np.zeros((0, 3, 3))
 
 
 class _TurningCouples(_Moments):
     @property
     def pairs(self) -> Pairs:
-        return self._pairs("omega")
+        return Pairs("omega", "omega", self._nodes, self._nodes)
 
     def _turned(self, state: State) -> FloatArray:
         return np.einsum("nij,nj->ni", rotation.matrix(state.q), self.moments)
@@ -120,8 +120,8 @@ class _TurningCouples(_Moments):
         return nodal("omega", self._turned(state))
 
     def stiffness(self, state: State) -> FloatArray:
-        """[c]×/2."""
-        return 0.5 * cross_matrix(self._turned(state)[self.pairs.rows])
+        """[c]×."""
+        return cross_matrix(self._turned(state)[self._nodes])
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,7 +130,7 @@ class _DirectorMoments(_Moments):
 
     @property
     def pairs(self) -> Pairs:
-        return self._pairs("w")
+        return Pairs("w", "w", self._nodes, self._nodes)
 
     def forces(self, state: State) -> FloatArray:
         """M × d / |d|² on w."""
@@ -139,8 +139,7 @@ class _DirectorMoments(_Moments):
 
     def stiffness(self, state: State) -> FloatArray:
         """-[M]× (I - 2 n ⊗ n) / |d|²."""
-        nodes = self.pairs.rows
-        d = self.normals[nodes] + state.w[nodes]
+        d = (self.normals + state.w)[self._nodes]
         square = np.sum(d * d, axis=1)[:, None, None]
         reflection = np.eye(3) - 2.0 * d[:, :, None] * d[:, None, :] / square
-        return -cross_matrix(self.moments[nodes]) @ reflection / square
+        return -cross_matrix(self.moments[self._nodes]) @ reflection / square

@@ -6,7 +6,7 @@ On the mid-surface x = Σ N_I x_I with a_α = x,α it has, per unit parent area,
 
 The functions are those of u on the element's nodes (the bubble that an element type may add has no part: the loaded
 surface is that through the nodes). They are of degree 2 in ξ and in η, so the integrands are of degree 5, and 3 × 3
-points are exact: the sum of the forces, and of their moments at the deformed nodes, is that of the surface to round-off.
+points are exact: the sum of the forces, and of their moments at the deformed nodes, is that of the surface.
 
 The load is conservative on a closed surface, where F_I = ∂(p V)/∂x_I with the enclosed volume V; over any group,
 the variation of p/3 ∫ x · a_1 × a_2 has a further term, p/3 ∮ (x × δx) · dx along the rim. So the tangent is
