@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import magshell as ms
 from loads.bodies import grouped
-from magshell.loads import nodal_forces
+from loads.cases import applied, at_rest, shell_of
 from magshell.shell.elements import ELEMENTS
 
 MESHES = {name: grouped(make()) for name, make in PATCHES.items()}
@@ -22,9 +22,14 @@ each_element = pytest.mark.parametrize("element", ELEMENTS.values(), ids=ELEMENT
 each_load = pytest.mark.parametrize("load", [ms.Force, ms.Moment])
 
 
+def on_nodes(mesh, element, load):
+    """Forces or couples of the nodes, (nodes, 3)."""
+    return applied(load, shell_of(mesh, element)).forces(at_rest(mesh))[:, COLUMNS[load.kind]]
+
+
 def shares(mesh, element, load, group):
     """The nodes' parts of a unit total, (nodes,)."""
-    return nodal_forces(mesh, element, [load(group, (1.0, 0.0, 0.0))])[:, COLUMNS[load.kind]][:, 0]
+    return on_nodes(mesh, element, load(group, (1.0, 0.0, 0.0)))[:, 0]
 
 
 def edge_measure(mesh, group):
@@ -53,7 +58,7 @@ def flat_measure(mesh, group):
 def test_totals_and_moments_about_any_point(mesh, load, element, total, about):
     """For every group the forces add up to the total, and act at one and the same centre whatever the total is."""
     for group in GROUPS:
-        nodal = nodal_forces(mesh, element, [load(group, total)])[:, COLUMNS[load.kind]]
+        nodal = on_nodes(mesh, element, load(group, total))
         size = np.abs(total).max()
         error = np.abs(nodal.sum(axis=0) - total).max() / size
         assert error < 1e-14, f"{group}: total off by {error:.1e}"
@@ -103,3 +108,26 @@ def test_only_nodes_that_carry_the_field_get_a_part(load, element):
         assert np.array_equal(parts != 0.0, members & carriers), group
     equal = shares(FLAT, element, load, "scattered")
     assert np.ptp(equal[equal != 0.0]) == 0.0
+
+
+@each_element
+@pytest.mark.parametrize("group", GROUPS)
+def test_turning_loads_are_shared_by_the_nodes_that_turn(group, element):
+    """A turning force as a moment is, since a node without micro-rotation has nothing to turn it with."""
+    shell, total = shell_of(CURVED, element), (0.3, -0.2, 0.5)
+    force, moment = (
+        applied(kind(group, total, follower=True), shell).forces(at_rest(CURVED)) for kind in (ms.Force, ms.Moment)
+    )
+    assert np.array_equal(force[:, :3], moment[:, 7:])
+    expected = np.outer(shares(CURVED, element, ms.Moment, group), total)
+    error = np.abs(force[:, :3] - expected).max()
+    assert error < 1e-15, f"{error:.1e}"
+
+
+@each_element
+def test_traction_is_a_force_per_area(element):
+    area, _ = flat_measure(FLAT, "half")
+    traction = np.array([0.3, -0.2, 0.5])
+    found = applied(ms.Traction("half", traction), shell_of(FLAT, element)).forces(at_rest(FLAT))[:, :3]
+    error = np.abs(found - on_nodes(FLAT, element, ms.Force("half", area * traction))).max()
+    assert error < 1e-15, f"{error:.1e}"
