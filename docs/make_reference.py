@@ -79,6 +79,18 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             **GROUPS,
         },
     ),
+    "annulus": (
+        schema.Annulus,
+        {
+            "generator": "Which generator.",
+            "inner_radius": "Of the inner edge.",
+            "outer_radius": "Of the outer edge.",
+            "elements": "Elements from the inner to the outer edge, and around.",
+            "angle": "First and last angle, from $+X_1$ towards $+X_2$; a span of 360° is a whole ring.",
+            "slit": "Whether a whole ring is cut open at its first angle.",
+            **GROUPS,
+        },
+    ),
     "blocks": (
         schema.Blocks,
         {
@@ -244,6 +256,7 @@ OTHERWISE = {
 }
 EXAMPLES = {
     "example-rectangle": "strip-10",
+    "example-annulus": "slit-annulus",
     "example-blocks": "thin-cross",
     "example-cylinder": "pump",
     "example-sphere-patch": "gripper",

@@ -15,7 +15,7 @@ from magshell.loads import Force, Load, Moment
 from magshell.magnetics import UniformField, remanence
 from magshell.magnetics.remanence import Remanence
 from magshell.materials import Material
-from magshell.mesh import Mesh, blocks, cylinder, rectangle, sphere_patch
+from magshell.mesh import Mesh, annulus, blocks, cylinder, rectangle, sphere_patch
 from magshell.model import Model, Shell
 from magshell.problem import schema
 from magshell.problem.schema import ProblemFile
@@ -123,6 +123,9 @@ def _generated(table: schema.Mesh) -> Mesh:
         case schema.Rectangle():
             _bounded(table.elements)
             return rectangle(table.length, table.width, table.elements)
+        case schema.Annulus():
+            _bounded(table.elements)
+            return annulus(table.inner_radius, table.outer_radius, table.elements, table.angle, table.slit)
         case schema.Cylinder():
             _bounded(table.elements)
             return cylinder(table.radius, table.length, table.elements, table.angle, table.axis, table.zero)

@@ -101,6 +101,17 @@ class Blocks(_Groups):
         return own
 
 
+class Annulus(_Groups):
+    """Flat ring about X3 or sector of one; edge groups inner, outer and, unless it is closed, start, stop."""
+
+    generator: Literal["annulus"]
+    inner_radius: f.PositiveLength
+    outer_radius: f.PositiveLength
+    elements: f.Divisions
+    angle: f.AngleRange = (0.0, 360.0)
+    slit: StrictBool = False
+
+
 class Cylinder(_Groups):
     """Tube or sector of one; edge groups start, end and, for a sector, angle-start, angle-stop."""
 
@@ -295,7 +306,7 @@ class SolverTable(Table):
     linear_solver: f.Name | None = None
 
 
-Mesh: TypeAlias = Rectangle | Blocks | Cylinder | SpherePatch
+Mesh: TypeAlias = Rectangle | Annulus | Blocks | Cylinder | SpherePatch
 Material: TypeAlias = NeoHookean | MooneyRivlin | StVenantKirchhoff
 Remanence: TypeAlias = ConstantRemanence | MeridionalRemanence | CircumferentialRemanence
 Support: TypeAlias = ClampTable | SimpleTable | SymmetryTable | PrescribeTable
