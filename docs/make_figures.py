@@ -34,6 +34,7 @@ from magshell.reproduction.variants import paper_file, variants
 DOCS = pathlib.Path(__file__).parent
 COMMAND = "docs/make_figures.py"
 IMAGES = DOCS / "images"
+PROBLEMS = sorted(name for example in EXAMPLES for name in example.problems)
 MESHES = ((15, 4), (30, 6), (60, 12))
 MESH_FIELDS = (0.02, 1.0, 10.0)
 Paths = Mapping[str, ms.Path]
@@ -43,10 +44,10 @@ def main() -> None:
     """Solve, draw, write."""
     IMAGES.mkdir(exist_ok=True)
     files = {name: file for example in EXAMPLES for name, file in variants(example).items()}
-    files |= {f"built-in {name}": problem.read(name)[1] for name in problem.names()}
+    files |= {f"built-in {name}": problem.read(name)[1] for name in PROBLEMS}
     files |= {_mesh_name(mesh): gripper_on(mesh) for mesh in MESHES}
     paths = solved(files)
-    built_in = {name: paths[f"built-in {name}"] for name in problem.names()}
+    built_in = {name: paths[f"built-in {name}"] for name in PROBLEMS}
     sections = []
     for example in EXAMPLES:
         print(f"figures of {example.name} ...", flush=True)

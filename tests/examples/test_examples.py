@@ -1,4 +1,4 @@
-"""Every built-in problem: its path (stops, convergence, global balance), and the values of independent programs.
+"""Every problem of the paper: its path (stops, convergence, global balance), and the values of independent programs.
 
 One file, so that one process solves each of them once.
 """
@@ -10,7 +10,8 @@ import pytest
 
 from examples.problems import read, value_at, variant
 from examples.references import FINE_MESH, SAME_MESH, STRIP_LENGTHS, Reference
-from magshell import Path, problem, solve
+from magshell import Path, solve
+from magshell.reproduction.catalogue import EXAMPLES
 from magshell.shell.evaluation import evaluate
 from magshell.solver import Settings, Step
 
@@ -77,7 +78,7 @@ def check_solid(reference: Reference, paths: dict[str, Path], divide: int, eleme
     )
 
 
-every_problem = pytest.mark.parametrize("name", problem.names())
+every_problem = pytest.mark.parametrize("name", [name for example in EXAMPLES for name in example.problems])
 
 
 @every_problem

@@ -1,4 +1,7 @@
-"""The built-in problems: the examples of the source paper, each a commented problem file beside this one."""
+"""The built-in problems: the examples of the source paper, and published problems of classical shells.
+
+Each is a commented problem file beside this one.
+"""
 
 from __future__ import annotations
 
