@@ -1,4 +1,4 @@
-"""The built-in problems: each is what the source describes."""
+"""The built-in problems: each is what its source describes."""
 
 # ruff: noqa: E501 (a table reads best with one entry a line)
 
@@ -34,6 +34,18 @@ class Example(NamedTuple):
     probes: str
 
 
+class Published(NamedTuple):
+    """Figures of a problem of Sze, Liu and Lo: m, Pa, and N or N m on the part that is modelled."""
+
+    name: str
+    area: float
+    thickness: float
+    youngs_modulus: float
+    poissons_ratio: float
+    loads: list[tuple[float, float, float]]
+    probes: str
+
+
 R = 24 * 6 / (2 * np.pi)
 EXAMPLES = [
     Example("strip-10", 20, 11 * 5, 1.1, 303, 7300, 143, 50, STRIP_STOPS, "tip"),
@@ -46,6 +58,13 @@ EXAMPLES = [
     Example("pump", 24 * 20, np.pi * R * 60, 0.9, 135, 3250, 94, 150, (20, 50, 100, 150), "A B C"),
     Example("gripper", 30 * 6, np.pi / 3 * R**2 * np.cos(np.pi / 12), 0.9, 135, 3250, 94, 10, (1, 2, 4, 6.8), "A B C D E"),
 ]  # fmt: skip
+PUBLISHED = [
+    Published("cantilever-shear", 10.0, 0.1, 1.2e6, 0.0, [(0, 0, 4)], "tip"),
+    Published("cantilever-moment", 12.0, 0.1, 1.2e6, 0.0, [(0, -50 * np.pi / 3, 0)], "tip"),
+    Published("slit-annulus", np.pi * (100 - 36), 0.03, 21e6, 0.0, [(0, 0, 0.8 * 4)], "A B"),
+    Published("hemisphere", np.pi / 2 * 100 * np.cos(np.pi / 10), 0.04, 6.825e7, 0.3, [(200, 0, 0), (0, -200, 0)], "smaller_radial larger_radial"),
+    Published("semi-cylinder", np.pi / 2 * 0.1016 * 0.3048, 3e-3, 2068.5e6, 0.3, [(0, 0, -1000)], "A"),
+]  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +73,7 @@ def loaded() -> dict[str, Problem]:
 
 
 def test_every_built_in_problem_is_described_here() -> None:
-    assert examples.names() == sorted(example.name for example in EXAMPLES)
+    assert examples.names() == sorted(example.name for example in [*EXAMPLES, *PUBLISHED])
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=[example.name for example in EXAMPLES])
@@ -77,6 +96,23 @@ def test_is_what_the_source_describes(example: Example, loaded: dict[str, Proble
     centres = mesh.points[mesh.elements].mean(axis=1)[:, None]
     magnitudes = np.linalg.norm(shell.remanence(mesh, centres), axis=2)
     assert set(np.round(magnitudes.ravel() * 1e3, 9)) <= {0.0, example.remanence}
+    assert describe(this).warnings == []
+
+
+@pytest.mark.parametrize("example", PUBLISHED, ids=[example.name for example in PUBLISHED])
+def test_is_the_published_problem(example: Published, loaded: dict[str, Problem]) -> None:
+    this = loaded[example.name]
+    shell, mesh = this.model.shell, this.model.shell.mesh
+    mu, lam = shell.material.shear_modulus, shell.material.lame_lambda
+    assert _area(mesh.points[mesh.elements]) == pytest.approx(example.area, rel=1e-4)
+    assert shell.thickness == pytest.approx(example.thickness, rel=1e-15)
+    assert this.file.material.law == "micropolar-st-venant-kirchhoff"
+    assert not shell.micro_rotation
+    assert mu * (3 * lam + 2 * mu) / (lam + mu) == pytest.approx(example.youngs_modulus, rel=1e-12)
+    assert lam / (2 * (lam + mu)) == pytest.approx(example.poissons_ratio, rel=1e-12)
+    assert [load.total for load in this.file.loads] == [pytest.approx(load, rel=1e-15) for load in example.loads]
+    assert list(this.model.probe_nodes) == example.probes.split()
+    assert "Sze, Liu and Lo" in examples.text(example.name)
     assert describe(this).warnings == []
 
 
