@@ -32,6 +32,11 @@ KINDS = {
     fields.PositiveFluxDensity: "flux density > 0",
     fields.ForceVector: "three forces, not all 0",
     fields.MomentVector: "three moments, not all 0",
+    fields.StressVector: "three stresses, not all 0",
+    fields.AccelerationVector: "three accelerations, not all 0",
+    fields.Pressure: "stress, not 0",
+    fields.PositiveDensity: "density > 0",
+    fields.History: "list of numbers",
     fields.Number: "number",
     fields.PositiveNumber: "number > 0",
     fields.Count: "whole number ≥ 1",
@@ -67,6 +72,8 @@ MATERIAL = {
 REMANENCE = {"kind": "Which field.", "group": "Element groups it holds for; may be left out of a single entry."}
 SUPPORT = {"kind": "Which support.", "group": "Group of edges, nodes or elements whose nodes are held."}
 LOAD = {"kind": "Which load.", "group": "Group of edges, nodes or elements that it acts on."}
+ON_ELEMENTS = {**LOAD, "group": "Group of elements that it acts on."}
+HISTORY = {"history": "Multiplier at the end of each stage; left out: 1 at the end of the first and from then on."}
 
 TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
     "rectangle": (
@@ -136,6 +143,7 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
         schema.ShellTable,
         {
             "thickness": "$h$.",
+            "density": "$\\rho$, mass per undeformed volume; gravity needs it.",
             "element": "Quadratic in $u$, director and micro-rotation; or the paper's, with 6, 0 or 39 enhanced "
             "parameters.",
             "thickness_stretch": "Stretch that varies linearly across the thickness: an unknown $\\varphi$, none "
@@ -185,8 +193,45 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "coupling": "The law that couples field and shell, see the [theory page](theory.md#5-magnetic-coupling).",
         },
     ),
-    "force": (schema.ForceTable, {**LOAD, "total": "Its sum over the group at load factor 1."}),
-    "moment": (schema.MomentTable, {**LOAD, "total": "Its sum over the group at load factor 1."}),
+    "force": (
+        schema.ForceTable,
+        {
+            **LOAD,
+            "total": "Its sum over the group.",
+            "follower": "Whether it turns with the micro-rotations of its nodes.",
+            **HISTORY,
+        },
+    ),
+    "moment": (
+        schema.MomentTable,
+        {
+            **LOAD,
+            "total": "Its sum over the group.",
+            "follower": "Whether it turns with the micro-rotations of its nodes.",
+            **HISTORY,
+        },
+    ),
+    "traction": (
+        schema.TractionTable,
+        {**ON_ELEMENTS, "traction": "Force per area of the undeformed mid-surface.", **HISTORY},
+    ),
+    "pressure": (
+        schema.PressureTable,
+        {
+            **ON_ELEMENTS,
+            "pressure": "Per area of the deformed mid-surface; positive pushes along its normal.",
+            **HISTORY,
+        },
+    ),
+    "gravity": (
+        schema.GravityTable,
+        {
+            "kind": "Which load.",
+            "acceleration": "Of free fall.",
+            "group": "Group of elements that has weight.",
+            **HISTORY,
+        },
+    ),
     "clamp": (schema.ClampTable, SUPPORT),
     "simple": (schema.SimpleTable, SUPPORT),
     "symmetry": (schema.SymmetryTable, {**SUPPORT, "normal": "Of the mirror plane."}),
@@ -218,7 +263,7 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "title": "One line, shown by `magshell examples` and at the start of a run.",
             "description": "For the reader of the file.",
             "mesh": "The mid-surface.",
-            "shell": "The thickness.",
+            "shell": "What the surface is made into.",
             "material": "The material law and its parameters.",
             "remanence": "The remanent flux density; elements without one have none.",
             "field": "The external field.",
@@ -250,6 +295,8 @@ OTHERWISE = {
     ("st-venant-kirchhoff", "length_scale"): "$h/10$",
     ("blocks", "elements"): "each block its own",
     ("block", "elements"): "those of `mesh`",
+    ("gravity", "group"): "the whole shell",
+    **{(kind, "history"): "`[1, 1, …]`" for kind in ("force", "moment", "traction", "pressure", "gravity")},
     ("constant", "vector"): "magnitude and direction",
     ("file", "field"): "none",
     ("file", "solver"): "see below",
@@ -261,15 +308,6 @@ EXAMPLES = {
     "example-cylinder": "pump",
     "example-sphere-patch": "gripper",
 }
-DIMENSIONS = (
-    units.LENGTH,
-    units.STRESS,
-    units.FLUX_DENSITY,
-    units.ANGLE,
-    units.INVERSE_LENGTH,
-    units.FORCE,
-    units.MOMENT,
-)
 
 
 def main() -> int:
@@ -350,7 +388,7 @@ def written(value: Any) -> str:
 def units_table() -> str:
     """Kinds of quantity and the units they may be written in."""
     rows = ["| Quantity | Units, SI first |", "|---|---|"]
-    rows += [f"| {kind.name} | {', '.join(f'`{unit}`' for unit in kind.units)} |" for kind in DIMENSIONS]
+    rows += [f"| {kind.name} | {', '.join(f'`{unit}`' for unit in kind.units)} |" for kind in units.QUANTITIES]
     return "\n".join(rows)
 
 

@@ -76,7 +76,22 @@ MOMENT = _dimension(
     {"N m": "1", "N mm": "1e-3", "mN m": "1e-3", "mN mm": "1e-6", "uN m": "1e-6", "µN m": "1e-6"},
     {"N m": 1.0, "N mm": 1e-6, "uN m": 0.0},
 )
+ACCELERATION = _dimension("acceleration", {"m/s^2": "1", "mm/s^2": "1e-3"}, {"m/s^2": 0.0})
+DENSITY = _dimension("density", {"kg/m^3": "1", "g/cm^3": "1e3"}, {"kg/m^3": 0.0})
 NUMBER = Dimension("number without unit", {}, ())
+
+QUANTITIES = (
+    LENGTH,
+    STRESS,
+    FLUX_DENSITY,
+    ANGLE,
+    INVERSE_LENGTH,
+    FORCE,
+    MOMENT,
+    ACCELERATION,
+    DENSITY,
+)
+"""All kinds that have a unit."""
 
 
 def parse(value: object, dimension: Dimension, unit: str | None = None) -> float:
@@ -166,7 +181,7 @@ def _split(value: object, dimension: Dimension) -> tuple[Decimal, str]:
 
 
 def _wrong_unit(found: str, dimension: Dimension) -> str:
-    for other in (LENGTH, STRESS, FLUX_DENSITY, ANGLE, INVERSE_LENGTH, FORCE, MOMENT):
+    for other in QUANTITIES:
         if found in other.units:
             return f"is a {other.name} where a {dimension.name} is expected (units: {dimension.allowed})"
     names = list(dimension.units)

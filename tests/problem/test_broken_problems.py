@@ -15,6 +15,7 @@ import pytest
 from problem_files import BLOCKS, LOADED, PUMP, STRIP, changed
 
 from magshell.cli import main
+from problem.loaded import EVERY_LOAD
 
 CLAMP = '[[supports]]\nkind = "clamp"\ngroup = "left"\n'
 REMANENCE = '[[remanence]]\nkind = "constant"\nvector = ["143 mT", 0, 0]\n'
@@ -104,6 +105,27 @@ BROKEN = [
     Broken("moment in Nm", '"0.01 N mm"', '"0.01 Nm"', "loads[1].total[1]", ("'Nm'", "'N m'"), LOADED),
     Broken("misspelt key of a load", "total = [0, 0,", "value = [0, 0,", "loads[0].value", ("unknown key", "total"), LOADED),
     Broken("table for a list of loads", "[[loads]]\nkind = \"force\"", "[loads]\nkind = \"force\"", "", ("TOML", "twice"), LOADED),
+    Broken("unknown kind among more loads", '"traction"\n', '"tracktion"\n', "loads[2].kind", ("'tracktion'", "'traction'"), EVERY_LOAD),
+    Broken("traction on an edge", '"two"\ntraction', '"left"\ntraction', "loads[2].group", ("group of edges",), EVERY_LOAD),
+    Broken("traction as a force", '"5 Pa"', '"5 N"', "loads[2].traction[2]", ("force", "stress"), EVERY_LOAD),
+    Broken("traction of zero", '"5 Pa"', "0", "loads[2].traction", ("zero",), EVERY_LOAD),
+    Broken("follower of a traction", '"two"\ntraction', '"two"\nfollower = true\ntraction', "loads[2].follower", ("unknown key",), EVERY_LOAD),
+    Broken("pressure of no group", '"one"\npressure', '"oen"\npressure', "loads[3].group", ("'oen'", "'one'"), EVERY_LOAD),
+    Broken("pressure as a vector", '"-8 Pa"', '[0, 0, "-8 Pa"]', "loads[3].pressure", ("stress",), EVERY_LOAD),
+    Broken("pressure of zero", '"-8 Pa"', "0", "loads[3].pressure", ("zero", "leave the table out"), EVERY_LOAD),
+    Broken("gravity without unit", '"-9.81 m/s^2"', "-9.81", "loads[4].acceleration[2]", ("no unit", "m/s^2"), EVERY_LOAD),
+    Broken("gravity in m/s2", '"-9.81 m/s^2"', '"-9.81 m/s2"', "loads[4].acceleration[2]", ("'m/s2'", "'m/s^2'"), EVERY_LOAD),
+    Broken("gravity of no group", '"two"\nhistory = [1, 1]', '"tow"\nhistory = [1, 1]', "loads[4].group", ("'tow'", "'two'"), EVERY_LOAD),
+    Broken("gravity without density", 'density = "1.2 g/cm^3"', "", "shell", ("density is missing", "gravity needs it"), EVERY_LOAD),
+    Broken("density of zero", '"1.2 g/cm^3"', "0", "shell.density", ("not positive",), EVERY_LOAD),
+    Broken("density in Pa", '"1.2 g/cm^3"', '"1.1 Pa"', "shell.density", ("stress", "density"), EVERY_LOAD),
+    Broken("follower as text", "follower = true\nhistory = [0, 1]", 'follower = "yes"\nhistory = [0, 1]', "loads[0].follower", ("'yes'", "true nor false"), EVERY_LOAD),
+    Broken("follower without micro-rotation", 'density = "1.2 g/cm^3"', 'density = "1.2 g/cm^3"\nmicro_rotation = false', "loads", ("force on 'far'", "turns with the micro-rotation", "leave follower out"), EVERY_LOAD),
+    Broken("history as a number", "history = [1, 1]", "history = 1", "loads[4].history", ("not a list", "each stage"), EVERY_LOAD),
+    Broken("history of nothing", "history = [1, 1]", "history = []", "loads[4].history", ("empty", "each stage"), EVERY_LOAD),
+    Broken("history with a unit", "history = [1, 1]", 'history = [1, "1 N"]', "loads[4].history[1]", ("'N'", "number"), EVERY_LOAD),
+    Broken("history not finite", "history = [1, 1]", "history = [1, nan]", "loads[4].history[1]", ("not a finite number",), EVERY_LOAD),
+    Broken("histories of different lengths", "history = [1, 1]", "history = [1, 1, 1]", "loads", ("force on 'far'", "2 entries", "3 stages"), EVERY_LOAD),
     Broken("neither field nor load", STRIP[STRIP.index("[field]") : STRIP.index("[[supports]]")], "", "field", ("zero", "nor is there a load", "nothing loads")),
     # supports and probes
     Broken("missing group", '"left"', '"lefft"', "supports[0].group", ("'lefft'", "'left'")),

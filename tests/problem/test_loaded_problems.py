@@ -10,12 +10,23 @@ import numpy as np
 import pytest
 from problem_files import LOADED, changed
 
+import magshell as ms
 from magshell import problem
 from magshell.cli import main
 from magshell.problem.building import build
 from magshell.problem.reading import check, parse
+from magshell.shell.state import State
+from problem.loaded import EVERY_LOAD
 
+BEFORE_GRAVITY = EVERY_LOAD[EVERY_LOAD.index("[[loads]]") : EVERY_LOAD.rindex("[[loads]]")]
 PAGE = Path(__file__).parents[2] / "docs" / "problem-file.md"
+
+
+def at_rest(model: ms.Model) -> np.ndarray:
+    """Sum of all loads on the undeformed shell, (nodes, 10)."""
+    mesh = model.shell.mesh
+    state = State.undeformed(len(mesh.points), len(mesh.elements), model.shell.element.vectors)
+    return np.sum([applied.forces(state) for applied in model.applied], axis=0)
 
 
 def built(text: str) -> problem.building.Problem:
@@ -34,7 +45,25 @@ def test_loads_beside_a_field() -> None:
     field = '[field]\nflux_density = [0, 0, "2 mT"]\n\n[[supports]]'
     model = built(changed(LOADED, ("[[supports]]", field))).model
     assert model.field.magnitude == 2e-3
-    assert model.nodal_loads.sum(axis=0)[2] == pytest.approx(2e-3, rel=1e-14)
+    assert at_rest(model).sum(axis=0)[2] == pytest.approx(2e-3, rel=1e-14)
+
+
+def test_every_key_reaches_the_model() -> None:
+    model = built(EVERY_LOAD).model
+    assert model.shell.density == 1200.0
+    force, moment, traction, pressure, gravity = model.loads
+    assert (force.group, force.total, force.follower, force.history) == ("far", (0, 0, 2e-3), True, (0, 1))
+    assert (moment.group, moment.total, moment.follower, moment.history) == ("left", (0, 1e-5, 0), True, (0.5, 1))
+    assert (traction.group, traction.traction, traction.history) == ("two", (0, 0, 5), (0, -1))
+    assert (pressure.group, pressure.pressure, pressure.history) == ("one", -8, (0, 1))
+    assert (gravity.group, gravity.acceleration, gravity.history) == ("two", (0, 0, -9.81), (1, 1))
+
+
+def test_keys_left_out() -> None:
+    force, moment = built(LOADED).model.loads
+    assert (force.follower, moment.follower, force.history, moment.history) == (False, False, None, None)
+    (gravity,) = built(changed(EVERY_LOAD, (BEFORE_GRAVITY, ""), ('group = "two"\nhistory = [1, 1]\n', ""))).model.loads
+    assert (gravity.group, gravity.history) == (None, None)
 
 
 def test_the_example_of_the_page() -> None:
@@ -42,7 +71,7 @@ def test_the_example_of_the_page() -> None:
     found = re.search(r"```toml\n(.*?)```", section, re.DOTALL)
     assert found
     loads = LOADED[LOADED.index("[[loads]]") : LOADED.index("[[supports]]")]
-    nodal = built(changed(LOADED, (loads, found[1]))).model.nodal_loads
+    nodal = at_rest(built(changed(LOADED, (loads, found[1]))).model)
     assert nodal.sum(axis=0) == pytest.approx([0, 0, 2e-3, 0, 0, 0, 0, 0, 1e-5, 0], rel=1e-14)
 
 

@@ -15,6 +15,7 @@ from magshell.errors import InputError
 from magshell.problem import examples
 from magshell.problem.building import Problem, build
 from magshell.problem.reading import check, parse
+from problem.loaded import EVERY_LOAD
 
 WORDS = re.compile(r"[\w.+-]+|\S")
 NEW_WORDS = st.one_of(
@@ -45,7 +46,7 @@ NEW_WORDS = st.one_of(
     st.floats().map(repr),
     st.text(max_size=5),
 )
-TEXTS = st.sampled_from([LOADED, *map(examples.text, ("strip-10", "gripper", "pump", "thin-cross"))])
+TEXTS = st.sampled_from([LOADED, EVERY_LOAD, *map(examples.text, ("strip-10", "gripper", "pump", "thin-cross"))])
 
 
 @st.composite
@@ -84,11 +85,12 @@ VALUES = st.one_of(
     st.sampled_from(
         ["clamp", "simple", "symmetry", "prescribe", "constant", "circumferential", "meridional", "blocks"]
     ),
+    st.sampled_from(["force", "moment", "traction", "pressure", "gravity"]),
     st.integers(-2, 60),
     st.builds(
         "{} {}".format,
         st.one_of(st.floats(), st.integers(-200, 200), st.sampled_from([0, 3, 15, 90, 360])),
-        st.sampled_from(["mm", "m", "kPa", "GPa", "mT", "T", "deg", "rad", "1/m", ""]),
+        st.sampled_from(["mm", "m", "kPa", "GPa", "mT", "T", "deg", "rad", "1/m", "m/s^2", "kg/m^3", "mN", ""]),
     ),
 )
 

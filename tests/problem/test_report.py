@@ -1,5 +1,7 @@
 """What `magshell check` tells: the dimensionless figures, and doubts about slips of units."""
 
+# ruff: noqa: E501 (a table reads best with one entry a line)
+
 from __future__ import annotations
 
 import numpy as np
@@ -10,6 +12,7 @@ from magshell import problem
 from magshell.problem.building import build
 from magshell.problem.reading import check, parse
 from magshell.problem.report import Report, describe
+from problem.loaded import EVERY_LOAD
 
 MU0 = 4e-7 * np.pi
 
@@ -84,6 +87,37 @@ def test_loads() -> None:
     assert "Loads" not in report_of(STRIP).sections
 
 
+def test_every_kind_of_load() -> None:
+    report = report_of(EVERY_LOAD)
+    side, thickness, extent, gravity = 10e-3 * 5e-3, 1e-3, 20e-3, 9.81
+    young = 303e3 * (3 * 7300e3 + 2 * 303e3) / (7300e3 + 303e3)
+    weight = 1200.0 * side * thickness * gravity
+    lines = report.sections["Loads"]
+    assert lines[:5] == [
+        ("far", "force (0, 0, 2 mN), 3 nodes, turns with the micro-rotation, times 0, 1 at the ends of the stages"),
+        ("left", "moment (0, 0.01 N mm, 0), 3 nodes, turns with the micro-rotation, times 0.5, 1 at the ends of the stages"),
+        ("two", "traction (0, 0, 5 Pa), 2 elements, in all (0, 0, 0.25 mN), times 0, -1 at the ends of the stages"),
+        ("one", "pressure -8 Pa, against the normal of 2 elements, at first 0.4 mN on their area, times 0, 1 at the ends of the stages"),
+        ("two", f"gravity (0, 0, -9.81 m/s^2), weight (0, 0, {-1e3 * weight:.4g} mN), times 1, 1 at the ends of the stages"),
+    ]  # fmt: skip
+    stiff = young * thickness**3 / (12 * extent)
+    assert number(entry(report, "Loads", "12 (F L + M) / (E h³)")) == pytest.approx(
+        (2e-3 + 1e-5 / extent + 5 * side) / stiff, rel=1e-3
+    )
+    assert number(entry(report, "Loads", "12 W L / (E h³)")) == pytest.approx(weight / stiff, rel=1e-3)
+    assert number(entry(report, "Loads", "p L / (E h)")) == pytest.approx(8 * extent / (young * thickness), rel=1e-3)
+    assert entry(report, "Shell", "density rho") == "1200 kg/m^3"
+
+
+def test_a_history_counts_by_its_largest_multiplier() -> None:
+    once, thrice = (report_of(changed(EVERY_LOAD, ("[0, -1]", history))) for history in ("[0, 0]", "[-3, 1]"))
+    label = "12 (F L + M) / (E h³)"
+    found = number(entry(thrice, "Loads", label)) - number(entry(once, "Loads", label))
+    young = 303e3 * (3 * 7300e3 + 2 * 303e3) / (7300e3 + 303e3)
+    expected = 12 * 3 * 5 * 10e-3 * 5e-3 * 20e-3 / (young * 1e-9)
+    assert found == pytest.approx(expected, rel=2e-3)
+
+
 DOUBTS = [
     (STRIP, '"1 mm"\n\n[mat', '"5 mm"\n\n[mat', "too thick for a shell"),
     (STRIP, '"1 mm"\n\n[mat', '"1 um"\n\n[mat', "thinner than any film"),
@@ -97,12 +131,23 @@ DOUBTS = [
     (STRIP, 'tip = ["20 mm", 0, 0]', "", "no probes"),
     (LOADED, '"2 mN"', '"2 kN"', "loads beyond any experiment"),
     (LOADED, '"0.01 N mm"', '"10 N m"', "12 (F L + M) / (E h³)"),
+    (
+        LOADED,
+        '"2 mN"]\n\n[[loads]]\nkind = "moment"\ngroup = "right"\ntotal = [0, "0.01 N mm", 0]',
+        '"0.1 uN"]',
+        "the shell will hardly move",
+    ),
+    (EVERY_LOAD, '"-9.81 m/s^2"', '"-9.81e9 mm/s^2"', "a weight beyond any experiment"),
+    (EVERY_LOAD, '"-8 Pa"', '"-8 GPa"', "a pressure beyond any experiment"),
+    (EVERY_LOAD, '"1.2 g/cm^3"', '"1.1 kg/m^3"', "lighter than a foam"),
+    (EVERY_LOAD, '"1.2 g/cm^3"', '"1100 g/cm^3"', "heavier than any metal"),
+    (STRIP, '"1 mm"\n\n[mat', '"1 mm"\ndensity = "1100 kg/m^3"\n\n[mat', "density but no gravity"),
     (BLOCKS, '["20 mm", "5 mm"]', '["60 mm", "5 mm"]', "badly shaped"),
 ]
 
 
 def test_nothing_to_doubt() -> None:
-    for text in (STRIP, BLOCKS, PUMP, LOADED):
+    for text in (STRIP, BLOCKS, PUMP, LOADED, EVERY_LOAD):
         assert report_of(text).warnings == []
 
 

@@ -11,21 +11,23 @@ from hypothesis import strategies as st
 
 from magshell.errors import InputError
 from magshell.units import (
+    ACCELERATION,
     ANGLE,
+    DENSITY,
     FLUX_DENSITY,
     FORCE,
     INVERSE_LENGTH,
     LENGTH,
     MOMENT,
     NUMBER,
+    QUANTITIES,
     STRESS,
     Dimension,
     parse,
     show,
 )
 
-DIMENSIONS = (LENGTH, STRESS, FLUX_DENSITY, ANGLE, INVERSE_LENGTH, FORCE, MOMENT)
-EXACT = [(dimension, unit) for dimension in DIMENSIONS for unit in dimension.units if unit != "deg"]
+EXACT = [(dimension, unit) for dimension in QUANTITIES for unit in dimension.units if unit != "deg"]
 finite = st.floats(min_value=-1e100, max_value=1e100, allow_nan=False).filter(lambda x: x == 0 or abs(x) > 1e-100)
 
 
@@ -48,6 +50,10 @@ finite = st.floats(min_value=-1e100, max_value=1e100, allow_nan=False).filter(la
         ("1e-3 N m", MOMENT, 1e-3),
         ("1 N mm", MOMENT, 1e-3),
         ("5  mN  mm", MOMENT, 5e-6),
+        ("-9.81 m/s^2", ACCELERATION, -9.81),
+        ("9810 mm/s^2", ACCELERATION, 9.81),
+        ("1.1 g/cm^3", DENSITY, 1100.0),
+        ("1070 kg/m^3", DENSITY, 1070.0),
         (0, LENGTH, 0.0),
         ("0", STRESS, 0.0),
         (0.0, ANGLE, 0.0),
@@ -72,13 +78,13 @@ def test_an_angle_in_degrees_stays_what_it_was(number: float) -> None:
     assert parse(f"{number!r} deg", ANGLE) == pytest.approx(math.radians(number), rel=1e-15)
 
 
-@given(number=finite, dimension=st.sampled_from(DIMENSIONS))
+@given(number=finite, dimension=st.sampled_from(QUANTITIES))
 def test_what_is_shown_reads_back(number: float, dimension: Dimension) -> None:
     text = show(number, dimension, digits=17)
     assert parse(text, dimension) == pytest.approx(number, rel=4e-16), text
 
 
-@given(number=finite.filter(bool), dimension=st.sampled_from(DIMENSIONS))
+@given(number=finite.filter(bool), dimension=st.sampled_from(QUANTITIES))
 def test_a_bare_number_is_refused_where_a_unit_belongs(number: float, dimension: Dimension) -> None:
     for value in (number, repr(number)):
         with pytest.raises(InputError, match="has no unit") as caught:
@@ -88,7 +94,7 @@ def test_a_bare_number_is_refused_where_a_unit_belongs(number: float, dimension:
 
 @given(value=st.one_of(st.text(max_size=30), st.integers(), st.floats(), st.booleans(), st.none()))
 def test_anything_else_is_an_input_error(value: object) -> None:
-    for dimension in (*DIMENSIONS, NUMBER):
+    for dimension in (*QUANTITIES, NUMBER):
         try:
             result = parse(value, dimension)
         except InputError:
@@ -105,6 +111,9 @@ def test_anything_else_is_an_input_error(value: object) -> None:
         ("3 mm", NUMBER, ("unit 'mm'",)),
         ("3 N", MOMENT, ("force", "moment", "N m, N mm")),
         ("3 Nm", MOMENT, ("did you mean 'N m'",)),
+        ("9.81 m/s2", ACCELERATION, ("did you mean 'm/s^2'",)),
+        ("9.81 N", ACCELERATION, ("force", "acceleration", "m/s^2")),
+        ("1.1 kg/m3", DENSITY, ("did you mean 'kg/m^3'",)),
         ("3 N mm", FORCE, ("moment", "force", "N, kN, mN")),
         ("nan mm", LENGTH, ("not a finite number",)),
         (float("inf"), LENGTH, ("not a finite number",)),
@@ -136,6 +145,8 @@ def test_says_what_is_wrong(value: object, dimension: Dimension, words: tuple[st
         (2e-3, FORCE, "2 mN"),
         (1e-5, MOMENT, "0.01 N mm"),
         (-2.5, MOMENT, "-2.5 N m"),
+        (-9.81, ACCELERATION, "-9.81 m/s^2"),
+        (1100.0, DENSITY, "1100 kg/m^3"),
         (math.radians(15), ANGLE, "15 deg"),
         (0.123456, NUMBER, "0.1235"),
     ],

@@ -11,7 +11,7 @@ import numpy as np
 from magshell import magnetics, materials
 from magshell.errors import InputError
 from magshell.linalg import make_solver
-from magshell.loads import Force, Load, Moment
+from magshell.loads import Force, Gravity, Load, Moment, Pressure, Traction
 from magshell.magnetics import UniformField, remanence
 from magshell.magnetics.remanence import Remanence
 from magshell.materials import Material
@@ -79,6 +79,7 @@ def build(file: ProblemFile, source: str) -> Problem:
             element=file.shell.element,
             thickness_stretch=file.shell.thickness_stretch,
             micro_rotation=file.shell.micro_rotation,
+            density=file.shell.density,
         )
         field = UniformField(file.field.flux_density, file.field.stops)
         supports = _supports(file.supports, mesh)
@@ -224,17 +225,30 @@ def _loads(tables: tuple[schema.Load, ...], mesh: Mesh) -> list[Load]:
     loads: list[Load] = []
     for number, table in enumerate(tables):
         with _at(f"loads[{number}].group"):
-            mesh.nodes_of(table.group)
+            _loaded_group(table, mesh)
         loads.append(_load(table))
     return loads
+
+
+def _loaded_group(table: schema.Load, mesh: Mesh) -> None:
+    if isinstance(table, schema.ForceTable | schema.MomentTable):
+        mesh.nodes_of(table.group)
+    elif table.group is not None:
+        mesh.elements_of(table.group)
 
 
 def _load(table: schema.Load) -> Load:
     match table:
         case schema.ForceTable():
-            return Force(table.group, table.total)
+            return Force(table.group, table.total, table.follower, table.history)
         case schema.MomentTable():
-            return Moment(table.group, table.total)
+            return Moment(table.group, table.total, table.follower, table.history)
+        case schema.TractionTable():
+            return Traction(table.group, table.traction, table.history)
+        case schema.PressureTable():
+            return Pressure(table.group, table.pressure, table.history)
+        case schema.GravityTable():
+            return Gravity(table.acceleration, table.group, table.history)
 
 
 def _probes_exist(probes: Mapping[str, tuple[float, float, float]], mesh: Mesh) -> None:

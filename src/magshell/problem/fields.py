@@ -79,10 +79,23 @@ def _one_or_more(value: object) -> object:
     return [value] if isinstance(value, str) else value
 
 
+def _multipliers(value: object) -> object:
+    if not isinstance(value, list | tuple) or not value:
+        fault = "is empty" if value in ([], ()) else "is not a list"
+        raise InputError(f"{fault}; expected one multiplier for each stage")
+    return value
+
+
 def not_empty(value: object) -> object:
     """A list or table that must hold something."""
     if value in ([], {}):
         raise InputError("is empty; it needs at least one entry")
+    return value
+
+
+def _not_zero(value: float) -> float:
+    if not value:
+        raise InputError("is zero; leave the table out")
     return value
 
 
@@ -106,6 +119,10 @@ FluxDensity = Annotated[float, _quantity(units.FLUX_DENSITY)]
 PositiveFluxDensity = Annotated[float, _positive_quantity(units.FLUX_DENSITY)]
 Force = Annotated[float, _quantity(units.FORCE)]
 Moment = Annotated[float, _quantity(units.MOMENT)]
+Pressure = Annotated[float, _quantity(units.STRESS), AfterValidator(_not_zero)]
+Stress = Annotated[float, _quantity(units.STRESS)]
+Acceleration = Annotated[float, _quantity(units.ACCELERATION)]
+PositiveDensity = Annotated[float, _positive_quantity(units.DENSITY)]
 Degrees = Annotated[float, _quantity(units.ANGLE, unit="deg")]
 Number = Annotated[float, _quantity(units.NUMBER)]
 PositiveNumber = Annotated[float, _positive_quantity(units.NUMBER)]
@@ -131,6 +148,15 @@ ForceVector = Annotated[
 MomentVector = Annotated[
     tuple[Moment, Moment, Moment], _list_of(3, "components of the moment about X1, X2, X3"), AfterValidator(_nonzero)
 ]
+StressVector = Annotated[
+    tuple[Stress, Stress, Stress], _list_of(3, "components of the traction along X1, X2, X3"), AfterValidator(_nonzero)
+]
+AccelerationVector = Annotated[
+    tuple[Acceleration, Acceleration, Acceleration],
+    _list_of(3, "components of the acceleration along X1, X2, X3"),
+    AfterValidator(_nonzero),
+]
+History = Annotated[tuple[Number, ...], BeforeValidator(_multipliers)]
 Corner = Annotated[tuple[Length, ...], _list_of((2, 3), "coordinates X1, X2 and, out of the plane, X3")]
 Corners = Annotated[tuple[Corner, Corner, Corner, Corner], _list_of(4, "corners, one after the other")]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,10 +12,12 @@ from magshell.arrays import FloatArray, IntArray
 from magshell.mesh import Mesh
 from magshell.mesh.quality import worst
 from magshell.nodal import width
-from magshell.problem import schema
+from magshell.problem import load_report, schema
 from magshell.problem.building import Problem
 from magshell.problem.fields import DIMENSION_OF_FIELD
-from magshell.units import FLUX_DENSITY, FORCE, LENGTH, MOMENT, STRESS, Dimension, show
+from magshell.problem.load_report import Strength
+from magshell.problem.wording import counted, quantity, vector
+from magshell.units import DENSITY, FLUX_DENSITY, LENGTH, STRESS, show
 
 VACUUM_PERMEABILITY = 4e-7 * math.pi
 
@@ -49,8 +51,6 @@ class _Figures:
     field: float
     remanence: FloatArray
     couple: float
-    force: float
-    moment: float
 
     @property
     def strongest(self) -> float:
@@ -71,29 +71,24 @@ class _Figures:
         stress = self.field * self.strongest / VACUUM_PERMEABILITY
         return 12.0 * stress / self.youngs_modulus * self.slenderness**2
 
-    @property
-    def mechanical_load(self) -> float:
-        """12 (F + M / L) L / (E h³), of the loads' sums of magnitudes: a square plate bends visibly from about 0.1."""
-        force = self.force + self.moment / self.extent
-        return 12.0 * force * self.extent / (self.youngs_modulus * self.thickness**3)
-
 
 def describe(problem: Problem) -> Report:
     """Describe a problem that has passed all checks."""
     figures = _figures(problem)
+    strong = load_report.strength(problem, figures.extent, figures.youngs_modulus)
     return Report(
         sections={
             "Problem": [("title", problem.title), ("file", problem.source)],
             "Mesh": list(_mesh(problem, figures.extent)),
-            "Shell": list(_shell(figures)),
+            "Shell": list(_shell(problem, figures)),
             "Material": list(_material(problem, figures)),
             "Remanence": list(_remanence(problem, figures)),
             "Field": list(_field(problem, figures)),
-            **({"Loads": list(_loads(problem, figures))} if problem.file.loads else {}),
+            **({"Loads": list(load_report.lines(problem, strong))} if problem.file.loads else {}),
             "Supports": list(_supports(problem)),
             "Probes": list(_probes(problem, figures.extent)),
         },
-        warnings=list(_doubts(problem, figures)),
+        warnings=list(_doubts(problem, figures, strong)),
     )
 
 
@@ -112,8 +107,6 @@ def _figures(problem: Problem) -> _Figures:
         field=float(np.linalg.norm(flux)),
         remanence=np.linalg.norm(vectors, axis=1),
         couple=float(np.linalg.norm(np.cross(vectors, flux), axis=1).max()),
-        force=sum(math.hypot(*load.total) for load in problem.file.loads if load.kind == "force"),
-        moment=sum(math.hypot(*load.total) for load in problem.file.loads if load.kind == "moment"),
     )
 
 
@@ -163,8 +156,10 @@ def _worst(measure: tuple[int, float], meaning: str) -> str:
     return f"{measure[1]:.3g} ({meaning}) in element {measure[0]}"
 
 
-def _shell(figures: _Figures) -> Iterator[tuple[str, str]]:
+def _shell(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
     yield "thickness h", show(figures.thickness, LENGTH)
+    if problem.model.shell.density is not None:
+        yield "density rho", show(problem.model.shell.density, DENSITY)
     yield "L/h", f"{figures.slenderness:.4g} with the largest extent L = {show(figures.extent, LENGTH)}"
     if math.isfinite(figures.radius):
         least = f"with the least radius of curvature R = {show(figures.radius, LENGTH)}"
@@ -202,17 +197,13 @@ def _sense(entry: schema.Remanence) -> str:
         case schema.ConstantRemanence():
             along = np.array(entry.direction if entry.vector is None else entry.vector)
             length = np.linalg.norm(along)
-            return f"constant, along {_vector(along / length)}" if length else "constant"
+            return f"constant, along {vector(along / length)}" if length else "constant"
         case schema.MeridionalRemanence():
             mirrored = ", mirrored at the equator" if entry.mirrored else ""
-            return f"meridional, away from the pole {_vector(entry.axis)}{mirrored}"
+            return f"meridional, away from the pole {vector(entry.axis)}{mirrored}"
         case schema.CircumferentialRemanence():
-            towards = f", towards {_vector(entry.towards)}" if entry.towards else ""
-            return f"circumferential, about the axis {_vector(entry.axis)}{towards}"
-
-
-def _vector(components: Iterable[float]) -> str:
-    return f"({', '.join(f'{component:.4g}' for component in components)})"
+            towards = f", towards {vector(entry.towards)}" if entry.towards else ""
+            return f"circumferential, about the axis {vector(entry.axis)}{towards}"
 
 
 def _span(magnitude: FloatArray, elements: IntArray) -> str:
@@ -227,7 +218,7 @@ def _field(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
     if figures.field == 0.0:
         yield "flux density B", "none"
         return
-    yield "flux density B", _components(table.flux_density, FLUX_DENSITY)
+    yield "flux density B", quantity(table.flux_density, FLUX_DENSITY)
     yield "|B|", show(figures.field, FLUX_DENSITY)
     yield "coupling law", table.coupling
     if table.stops:
@@ -236,39 +227,21 @@ def _field(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
     yield "12 |B| |Brem| / (mu0 E) (L/h)²", f"{figures.bending_load:.4g}"
 
 
-def _loads(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
-    for table in problem.file.loads:
-        total = _components(table.total, FORCE if table.kind == "force" else MOMENT)
-        yield table.group, f"{table.kind} {total}, {_counted(problem, table.group)}"
-    yield "12 (F L + M) / (E h³)", f"{figures.mechanical_load:.4g}"
-
-
-def _counted(problem: Problem, group: str) -> str:
-    nodes = len(problem.model.shell.mesh.nodes_of(group))
-    return f"{nodes} node{'s' if nodes > 1 else ''}"
-
-
 def _supports(problem: Problem) -> Iterator[tuple[str, str]]:
     for table in problem.file.supports:
-        counted = _counted(problem, table.group)
+        nodes = counted(len(problem.model.shell.mesh.nodes_of(table.group)), "node")
         match table:
             case schema.SymmetryTable():
                 yield (
                     table.group,
-                    f"symmetry, normal {_vector(table.normal)}, {counted}",
+                    f"symmetry, normal {vector(table.normal)}, {nodes}",
                 )
             case schema.PrescribeTable():
                 what = table.field if table.component is None else f"{table.field}{table.component}"
-                value = _components(table.value, DIMENSION_OF_FIELD[table.field])
-                yield table.group, f"prescribe {what} = {value}, {counted}"
+                value = quantity(table.value, DIMENSION_OF_FIELD[table.field])
+                yield table.group, f"prescribe {what} = {value}, {nodes}"
             case _:
-                yield table.group, f"{table.kind}, {counted}"
-
-
-def _components(value: float | tuple[float, ...], dimension: Dimension) -> str:
-    if isinstance(value, tuple):
-        return f"({', '.join(show(component, dimension) for component in value)})"
-    return show(value, dimension)
+                yield table.group, f"{table.kind}, {nodes}"
 
 
 def _probes(problem: Problem, extent: float) -> Iterator[tuple[str, str]]:
@@ -282,7 +255,7 @@ def _coordinate(value: float, extent: float) -> str:
     return show(value if abs(value) > 1e-9 * extent else 0.0, LENGTH)
 
 
-def _doubts(problem: Problem, figures: _Figures) -> Iterator[str]:
+def _doubts(problem: Problem, figures: _Figures, strong: Strength) -> Iterator[str]:
     """Magnitudes that no experiment has, most often a slip of units."""
     modulus = show(figures.shear_modulus, STRESS)
     if figures.slenderness < 5.0:
@@ -310,8 +283,7 @@ def _doubts(problem: Problem, figures: _Figures) -> Iterator[str]:
         yield f"the bending load is {figures.bending_load:.2g}: the shell will hardly move; check the units"
     elif figures.bending_load > 1e5:
         yield f"the bending load is {figures.bending_load:.2g}: far beyond any experiment; check the units"
-    if figures.mechanical_load > 1e5:
-        yield f"12 (F L + M) / (E h³) is {figures.mechanical_load:.2g}: loads beyond any experiment; check the units"
+    yield from load_report.doubts(problem, strong)
     worst_corner = worst(problem.model.shell.mesh)["scaled_jacobian"]
     if worst_corner.value < 0.2:
         yield f"element {worst_corner.element} is badly shaped (scaled Jacobian {worst_corner.value:.2g})"

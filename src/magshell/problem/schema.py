@@ -138,6 +138,7 @@ class ShellTable(Table):
     """What the surface is made into."""
 
     thickness: f.PositiveLength
+    density: f.PositiveDensity | None = None
     element: Literal["quadratic", "paper", "paper-unenhanced", "paper-39"] = "quadratic"
     thickness_stretch: Literal["linear", "none", "plane-stress"] = "linear"
     micro_rotation: StrictBool = True
@@ -277,21 +278,49 @@ class PrescribeTable(_Support):
 
 
 class _Load(Table):
-    group: f.Name
+    history: f.History | None = None
 
 
 class ForceTable(_Load):
-    """A dead force that reaches `total` at load factor 1."""
+    """A force, dead or turning with the micro-rotation."""
 
     kind: Literal["force"]
+    group: f.Name
     total: f.ForceVector
+    follower: StrictBool = False
 
 
 class MomentTable(_Load):
-    """A dead moment on the micro-rotation that reaches `total` at load factor 1."""
+    """A moment on the micro-rotation, dead or turning with it, or on the director."""
 
     kind: Literal["moment"]
+    group: f.Name
     total: f.MomentVector
+    follower: StrictBool = False
+
+
+class TractionTable(_Load):
+    """A dead force per undeformed area."""
+
+    kind: Literal["traction"]
+    group: f.Name
+    traction: f.StressVector
+
+
+class PressureTable(_Load):
+    """A pressure along the deformed normal."""
+
+    kind: Literal["pressure"]
+    group: f.Name
+    pressure: f.Pressure
+
+
+class GravityTable(_Load):
+    """Weight."""
+
+    kind: Literal["gravity"]
+    acceleration: f.AccelerationVector
+    group: f.Name | None = None
 
 
 class SolverTable(Table):
@@ -310,7 +339,7 @@ Mesh: TypeAlias = Rectangle | Annulus | Blocks | Cylinder | SpherePatch
 Material: TypeAlias = NeoHookean | MooneyRivlin | StVenantKirchhoff
 Remanence: TypeAlias = ConstantRemanence | MeridionalRemanence | CircumferentialRemanence
 Support: TypeAlias = ClampTable | SimpleTable | SymmetryTable | PrescribeTable
-Load: TypeAlias = ForceTable | MomentTable
+Load: TypeAlias = ForceTable | MomentTable | TractionTable | PressureTable | GravityTable
 
 
 class ProblemFile(Table):

@@ -1,0 +1,24 @@
+"""Pieces of text that the parts of a report share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from magshell.units import Dimension, show
+
+
+def vector(components: Iterable[float]) -> str:
+    """Plain numbers in brackets."""
+    return f"({', '.join(f'{component:.4g}' for component in components)})"
+
+
+def quantity(value: float | tuple[float, ...], dimension: Dimension) -> str:
+    """A quantity, or several in brackets, with units."""
+    if isinstance(value, tuple):
+        return f"({', '.join(show(component, dimension) for component in value)})"
+    return show(value, dimension)
+
+
+def counted(number: int, what: str) -> str:
+    """The number of something, in the plural unless it is one."""
+    return f"{number} {what}{'s' if number != 1 else ''}"
