@@ -20,11 +20,14 @@ def grouped(mesh: Mesh) -> Mesh:
     return Mesh(mesh.points, mesh.elements, {"half": np.arange(len(mesh.elements))[::2]}, mesh.edge_groups, nodes)
 
 
-def arm(loads: Sequence[Any], field: float = 0.0, stops: Sequence[float] = (), **shell: Any) -> ms.Model:
+def arm(
+    loads: Sequence[Any], field: float = 0.0, stops: Sequence[float] = (), micro_rotation: bool = True, **shell: Any
+) -> ms.Model:
     """Part of a sphere, clamped near the pole, in a coarse mesh; magnetised along its meridians."""
     mesh = grouped(ms.mesh.sphere_patch(RADIUS, polar=(15, 165), azimuth=(-15, 15), elements=(6, 2)))
-    material = ms.MicropolarNeoHookean(135e3, 3.25e6, 13.5e3, 9e-5)
-    body = ms.Shell(mesh, 0.9e-3, material, ms.remanence.meridional(94e-3), **shell)
+    micropolar = (13.5e3, 9e-5) if micro_rotation else (0.0, 0.0)
+    material, shell["micro_rotation"] = ms.MicropolarNeoHookean(135e3, 3.25e6, *micropolar), micro_rotation
+    body = ms.Shell(mesh, 0.9e-3, material, ms.remanence.meridional(94e-3), density=1100.0, **shell)
     return ms.Model(body, [ms.Clamp("top")], ms.UniformField([0, 0, field], stops), loads=loads)
 
 
@@ -38,3 +41,18 @@ def mixed_loads() -> list[Any]:
         ms.Force("scattered", (1e-4, 1e-4, -2e-4)),
         ms.Moment("scattered", (3e-6, 1e-6, 2e-6)),
     ]
+
+
+def loads_of_every_kind(micro_rotation: bool = True) -> list[Any]:
+    """As `mixed_loads`, of all kinds; forces that turn need something to turn with."""
+    loads = [
+        ms.Moment("bottom", (1e-6, -5e-6, 2e-6)),
+        ms.Moment("half", (1e-6, 2e-6, -3e-6)),
+        ms.Traction("half", (-0.5, 0.7, 1.2)),
+        ms.Pressure("half", 1.0),
+        ms.Gravity((-0.5, 0.3, 1.0)),
+    ]
+    if micro_rotation:
+        loads.append(ms.Moment("scattered", (3e-6, 1e-6, 2e-6), follower=True))
+        loads.append(ms.Force("bottom", (1e-4, 1e-4, 2e-4), follower=True))
+    return loads

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import magshell as ms
-from loads.bodies import arm, mixed_loads
+from loads.bodies import RADIUS, arm, loads_of_every_kind, mixed_loads
 from magshell import Settings, solve
 from magshell.shell.elements import ELEMENTS
 
@@ -87,7 +88,8 @@ def test_reaction_is_minus_the_load(bent: ms.Path) -> None:
         assert found.load_force == pytest.approx(λ * total, abs=1e-14 * np.linalg.norm(total))
         assert found.reaction_force == pytest.approx(-λ * total, abs=1e-8 * λ * np.linalg.norm(total))
         position = bent.discretisation.mesh.points + step.state.u
-        moment = λ * (np.cross(position, bent.model.nodal_loads[:, :3]).sum(axis=0) + couple)
+        forces = np.sum([load.forces(step.state)[:, :3] for load in bent.model.applied], axis=0)
+        moment = λ * (np.cross(position, forces).sum(axis=0) + couple)
         size = float(np.linalg.norm(moment))
         assert found.load_moment == pytest.approx(moment, abs=1e-13 * size)
         expected = -moment - found.magnetic_torque
@@ -98,3 +100,26 @@ def test_force_that_only_a_moment_exerts_is_measured_against_it() -> None:
     """Pure bending leaves no force but round-off: over the couple on the body's size it is none."""
     path = solve(arm([ms.Moment("bottom", (0, -1e-5, 0))]))
     assert path.summary["force_imbalance"] < 1e-8, path.summary["force_imbalance"]
+
+
+@pytest.mark.parametrize("micro_rotation", [True, False], ids=["ten parameters", "seven"])
+def test_loads_of_every_kind_balance(micro_rotation: bool) -> None:
+    """Reactions against the loads at the deformed nodes, with the couples of forces on directors; they bend the arm."""
+    path = solve(arm(loads_of_every_kind(micro_rotation), micro_rotation=micro_rotation))
+    assert np.abs(path.steps[-1].state.u).max() > 0.5 * RADIUS
+    for step in path.steps[1:]:
+        assert step.balance.force_imbalance < 1e-8, f"{step.load_factor}: {step.balance.force_imbalance:.1e}"
+        assert step.balance.moment_imbalance < 1e-8, f"{step.load_factor}: {step.balance.moment_imbalance:.1e}"
+        total = step.load_factor * np.sum([load.forces(step.state) for load in path.model.applied], axis=0)
+        assert step.balance.load_force == pytest.approx(total[:, :3].sum(axis=0), rel=1e-12)
+
+
+def test_histories_scale_each_load_by_itself() -> None:
+    """First gravity, then a pressure on it while gravity goes: the last state is that of the pressure alone."""
+    weight, pressure = ms.Gravity((-0.5, 0.3, 1.0), history=(1.0, 0.0)), ms.Pressure("half", 1.0, history=(0.0, 1.0))
+    path = solve(arm([weight, pressure]), Settings(tolerance=1e-12))
+    for load, stage in ((weight, 0), (pressure, 1)):
+        alone = solve(arm([replace(load, history=None)]), Settings(tolerance=1e-12)).steps[-1].state
+        found = [step.state for step in path.steps if step.stage == stage][-1]
+        error = np.abs(found.u - alone.u).max() / np.abs(alone.u).max()
+        assert error < 1e-9, f"{load.kind}: {error:.1e}"

@@ -8,6 +8,7 @@ from battery import each_element, with_points
 
 import magshell as ms
 from loads.cases import applied, at_rest, crumpled, each_patch, moved, product, shell_of
+from magshell.loads.functions import loaded
 from magshell.mesh import Mesh
 from magshell.mesh.edges import find_edges
 from magshell.nodal import COMPONENTS
@@ -63,7 +64,7 @@ def rim_integrals(mesh, x, group):
 def volume(mesh, element, state):
     """Enclosed volume ⅓ ∫ x · a_1 × a_2 at 6 × 6 points."""
     parent, weights = gauss_legendre(6)
-    functions = element.functions(8, parent, mesh.points[mesh.elements])
+    functions = loaded(element, parent, mesh.points[mesh.elements])
     x = (mesh.points + state.u)[mesh.elements]
     a = np.einsum("epan,enx->apex", functions.derivatives, x)
     return np.einsum("p,epn,enx,pex->", weights, functions.values, x, np.cross(a[0], a[1])) / 3.0
@@ -80,7 +81,7 @@ def test_resultants_are_those_of_the_rim(mesh, element):
     size = np.abs(F).sum()
     error = np.abs(F[:, :3].sum(axis=0) - P * area).max() / size
     assert error < 1e-15, f"force: {error:.1e}"
-    error = np.abs(np.cross(x, F[:, :3]).sum(axis=0) - P * moment).max() / size
+    error = np.abs(np.cross(x, F[:, :3]).sum(axis=0) - P * moment).max() / (size * mesh.size)
     assert error < 1e-15, f"moment: {error:.1e}"
 
 
@@ -93,7 +94,7 @@ def test_a_cylinder_and_its_lids(element):
         area, moment = rim_integrals(mesh, mesh.points + state.u, "all")
         size = np.abs(F).sum()
         assert np.abs(F.sum(axis=0) - P * area).max() < 1e-15 * size
-        assert np.abs(np.cross(mesh.points + state.u, F).sum(axis=0) - P * moment).max() < 1e-15 * size
+        assert np.abs(np.cross(mesh.points + state.u, F).sum(axis=0) - P * moment).max() < 1e-15 * size * mesh.size
 
 
 @each_element
@@ -104,7 +105,7 @@ def test_a_closed_surface_has_no_resultant(mesh, element):
     state = crumpled(mesh, 3)
     F = load.forces(state)[:, :3]
     assert np.abs(F.sum(axis=0)).max() < 1e-15 * np.abs(F).sum()
-    assert np.abs(np.cross(mesh.points + state.u, F).sum(axis=0)).max() < 1e-15 * np.abs(F).sum()
+    assert np.abs(np.cross(mesh.points + state.u, F).sum(axis=0)).max() < 1e-15 * np.abs(F).sum() * mesh.size
 
 
 def test_positive_pressure_pushes_along_the_director():
@@ -129,14 +130,18 @@ def test_the_potential_is_the_pressure_times_the_enclosed_volume(mesh, element):
 
 @each_element
 def test_the_volume_of_the_ball(element):
-    """The potential is that of a ball: eight nodes lack ξ²η² of the sphere's height, an error of the fourth order."""
+    """The potential is that of a ball: eight nodes lack ξ²η² of the sphere's height, an error of the fourth order.
+
+    What follows the nodes inside an element with a bubble lies lower by a part of the arc's rise, of the second.
+    """
     counts, errors = (6, 12), []
     for count in counts:
         mesh = ball(count)
         errors.append(1.0 - volume(mesh, element, at_rest(mesh)) / (4.0 / 3.0 * np.pi))
     order = np.log2(errors[0] / errors[1])
     # the next term is smaller by the square of an element's angle
-    assert order == pytest.approx(4.0, abs=(0.5 * np.pi / counts[0]) ** 2), f"order {order:.3f}, errors {errors}"
+    expected = 2.0 if element.bubble else 4.0
+    assert order == pytest.approx(expected, abs=(0.5 * np.pi / counts[0]) ** 2), f"order {order:.3f}, errors {errors}"
 
 
 def skew_part(mesh, load, state):

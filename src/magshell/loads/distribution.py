@@ -6,8 +6,8 @@ undeformed mid-surface,
     ∫ t · δu + m · δω = Σ_I F_I · δu_I + C_I · δω_I,    F_I = t ∫ N_I,    C_I = m ∫ M_I,
 
 is that of nodal forces, with the functions N_I of the displacement and M_I of the micro-rotation. On an element they
-are those of its type; on an edge they are quadratic, those of the micro-rotation linear where only corners carry it.
-The bubble that an element type may add to the displacement is left out of the work: it carries no load.
+are those of its type (for the displacement see `magshell.loads.functions`); on an edge they are quadratic, those of the
+micro-rotation linear where only corners carry it.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
+from magshell.loads.functions import loaded
 from magshell.shell.elements import ElementType
 from magshell.shell.geometry import director_functions
 from magshell.shell.shape_functions import gauss_legendre
@@ -46,14 +47,14 @@ def shares(shell: Shell, group: str, field: str) -> FloatArray:
     """
     mesh, element = shell.mesh, shell.element
     members = mesh.nodes_of(group)
-    count = 8 if field == "u" else element.rest_nodes
     parts = np.zeros(len(mesh.points))
     if group in mesh.edge_groups:
         edges = mesh.edge_groups[group]
-        np.add.at(parts, edges, _along_edges(mesh.points[edges], count))
+        np.add.at(parts, edges, _along_edges(mesh.points[edges], quadratic=field == "u" or element.rest_nodes == 8))
     elif group in mesh.element_groups:
         elements = mesh.elements[mesh.element_groups[group]]
-        np.add.at(parts, elements[:, :count], _over_elements(mesh.points[elements], element, count))
+        integrals = _over_elements(mesh.points[elements], element, field)
+        np.add.at(parts, elements[:, : integrals.shape[1]], integrals)
     else:
         carrying = members[shell.carriers[field][members]]
         if not carrying.size:
@@ -65,7 +66,7 @@ def shares(shell: Shell, group: str, field: str) -> FloatArray:
 def nodal_areas(shell: Shell, members: IntArray) -> FloatArray:
     """Integrals (nodes,) of the functions of u over the undeformed area of some elements, m²."""
     elements, areas = shell.mesh.elements[members], np.zeros(len(shell.mesh.points))
-    np.add.at(areas, elements, _over_elements(shell.mesh.points[elements], shell.element, 8))
+    np.add.at(areas, elements, _over_elements(shell.mesh.points[elements], shell.element, "u"))
     return areas
 
 
@@ -78,35 +79,37 @@ def nodal_volumes(shell: Shell, normals: FloatArray, members: IntArray) -> Float
     """
     mesh, element, h = shell.mesh, shell.element, shell.thickness
     elements = mesh.elements[members]
-    points, parent_weights = gauss_legendre(POINTS)
-    functions = element.functions(8, points, mesh.points[elements])
+    points, weights = gauss_legendre(POINTS)
+    slopes = element.functions(8, points, mesh.points[elements]).derivatives
     rest = element.functions(element.rest_nodes, points, mesh.points[elements])
     ends = normals[elements[:, : element.rest_nodes]]
     director = director_functions(ends, rest.values, rest.derivatives)
-    A = np.einsum("epan,enx->epax", functions.derivatives, mesh.points[elements])
+    A = np.einsum("epan,enx->epax", slopes, mesh.points[elements])
     D, dD = np.einsum("epn,enx->epx", director[:, :, 0], ends), np.einsum("epan,enx->epax", director[:, :, 1:], ends)
     area, curved = (np.einsum("epx,epx->ep", np.cross(b[:, :, 0], b[:, :, 1]), D) for b in (A, dD))
+    sections = (h * area + h**3 / 12.0 * curved) * weights
     volumes = np.zeros(len(mesh.points))
-    weights = (h * area + h**3 / 12.0 * curved) * parent_weights
-    np.add.at(volumes, elements, np.einsum("ep,epn->en", weights, functions.values))
+    carried = loaded(element, points, mesh.points[elements]).values
+    np.add.at(volumes, elements, np.einsum("ep,epn->en", sections, carried))
     return volumes
 
 
-def _along_edges(points: FloatArray, count: int) -> FloatArray:
+def _along_edges(points: FloatArray, quadratic: bool) -> FloatArray:
     """Integrals (edges, 3) of the functions of end, end and middle over the length of edges (edges, 3, 3), m."""
     s, weights = np.polynomial.legendre.leggauss(POINTS)
     middle = 1.0 - s**2
     slope = np.column_stack([s - 0.5, s + 0.5, -2.0 * s])
     length = np.linalg.norm(np.einsum("pn,enx->epx", slope, points), axis=-1) * weights
     functions = np.column_stack([0.5 * (1.0 - s), 0.5 * (1.0 + s), np.zeros(POINTS)])
-    if count == 8:
+    if quadratic:
         functions += middle[:, None] * [-0.5, -0.5, 1.0]
     return length @ functions
 
 
-def _over_elements(points: FloatArray, element: ElementType, count: int) -> FloatArray:
-    """Integrals (elements, count) of the nodes' functions over the area of elements (elements, 8, 3), m²."""
+def _over_elements(points: FloatArray, element: ElementType, field: str) -> FloatArray:
+    """Integrals (elements, nodes) of a field's functions over the area of elements (elements, 8, 3), m²."""
     parent, weights = gauss_legendre(POINTS)
     A = np.einsum("epan,enx->epax", element.functions(8, parent, points).derivatives, points)
     area = np.linalg.norm(np.cross(A[:, :, 0], A[:, :, 1]), axis=-1) * weights
-    return np.einsum("ep,epn->en", area, element.functions(count, parent, points).values)
+    carried = loaded(element, parent, points) if field == "u" else element.functions(element.rest_nodes, parent, points)
+    return np.einsum("ep,epn->en", area, carried.values)

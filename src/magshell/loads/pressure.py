@@ -4,9 +4,9 @@ On the mid-surface x = Σ N_I x_I with a_α = x,α it has, per unit parent area,
 
     F_I = p ∫ N_I a_1 × a_2,     K_IJ = -∂F_I/∂u_J = p ∫ N_I [N_J,1 a_2 - N_J,2 a_1]×.
 
-The functions are those of u on the element's nodes (the bubble that an element type may add has no part: the loaded
-surface is that through the nodes). They are of degree 2 in ξ and in η, so the integrands are of degree 5, and 3 × 3
-points are exact: the sum of the forces, and of their moments at the deformed nodes, is that of the surface.
+The functions are those of `magshell.loads.functions`: the nodes alone say where the loaded surface is. Their degree is
+2 in ξ and in η, so the integrands are of degree 5, and 3 × 3 points are exact: the sum of the forces, and of their
+moments at the deformed nodes, is that of the surface.
 
 The load is conservative on a closed surface, where F_I = ∂(p V)/∂x_I with the enclosed volume V; over any group,
 the variation of p/3 ∫ x · a_1 × a_2 has a further term, p/3 ∮ (x × δx) · dx along the rim. So the tangent is
@@ -26,6 +26,7 @@ from magshell.arrays import FloatArray, IntArray
 from magshell.loads.checks import keep_history, located, number
 from magshell.loads.cross import cross_matrix
 from magshell.loads.dead import nodal
+from magshell.loads.functions import loaded
 from magshell.loads.load import Applied, Pairs
 from magshell.mesh.edges import find_edges
 from magshell.shell.shape_functions import gauss_legendre
@@ -66,7 +67,7 @@ class Pressure:
             elements = shell.mesh.elements[shell.mesh.elements_of(self.group)]
             pressure = number("pressure", self.pressure)
         parent, weights = gauss_legendre(POINTS)
-        functions = shell.element.functions(8, parent, shell.mesh.points[elements])
+        functions = loaded(shell.element, parent, shell.mesh.points[elements])
         return _Pressing(
             shell.mesh.points,
             elements,
