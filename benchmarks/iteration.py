@@ -28,11 +28,11 @@ def measure(elements: int, solver: str, repeats: int) -> None:
     linear_solver = make_solver(solver)
     state = discretisation.undeformed()
     stresses = discretisation.stresses_at(state)
-    discretisation.assemble(state, 0.002, stresses)
+    discretisation.assemble(state, discretisation.model.loading(0.002), stresses)
     ratios, iterations, bares = [], [], []
     for repeat in range(repeats + 1):
         start = time.perf_counter()
-        assembly = discretisation.assemble(state, 0.002, stresses)
+        assembly = discretisation.assemble(state, discretisation.model.loading(0.002), stresses)
         linear_solver.factorise(assembly.matrix)
         increment = discretisation.expand(linear_solver.solve(assembly.right_side))
         d_alpha = discretisation.recover(increment)

@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 
 from magshell import magnetics, materials
 from magshell.assembly import Discretisation
-from magshell.loads import nodal_forces
+from magshell.loading import Loading
 from magshell.magnetics import UniformField, remanence
 from magshell.mesh import Mesh, rectangle
 from magshell.model import Shell
@@ -149,8 +149,12 @@ class Unsupported:
         return resolve(self.shell.mesh, self.supports, self.shell.carriers)
 
     @cached_property
-    def nodal_loads(self):
-        return nodal_forces(self.shell.mesh, self.shell.element, self.loads)
+    def applied(self):
+        return tuple(load.applied(self.shell, self.normals) for load in self.loads)
+
+    def loading(self, load_factor):
+        held = load_factor * self.constraints.values[0]
+        return Loading(load_factor * self.field.vector, np.full(len(self.loads), load_factor), held)
 
     @cached_property
     def normals(self):

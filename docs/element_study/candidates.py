@@ -15,6 +15,7 @@ import magshell as ms
 from element_study.cases import built_in, moved
 from magshell import assembly
 from magshell.assembly import Discretisation
+from magshell.loading import Loading
 from magshell.loads import Force
 from magshell.mesh import Mesh
 from magshell.shell import geometry
@@ -129,10 +130,10 @@ def stiffness(mesh: Mesh, element: ElementType, length_scale: float = 0.1) -> np
     normals = nodal_normals(mesh.points, mesh.elements)
     body = SimpleNamespace(
         shell=shell, field=ms.UniformField((0.0, 0.0, 0.0)), coupling=ms.MicropolarCouple(), normals=normals,
-        constraints=resolve(mesh, (), shell.carriers), nodal_loads=np.zeros((len(mesh.points), 10)),
+        constraints=resolve(mesh, (), shell.carriers), applied=(),
     )  # fmt: skip
     discretisation = Discretisation(body, lambda graph: np.arange(graph.shape[0]))
-    matrix = discretisation.assemble(discretisation.undeformed(), 0.0).matrix
+    matrix = discretisation.assemble(discretisation.undeformed(), Loading(np.zeros(3), np.zeros(0), np.zeros((len(mesh.points), 10)))).matrix
     return 0.5 * (matrix.toarray() + matrix.toarray().T)
 
 

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     )
     from magshell.materials import MicropolarMooneyRivlin, MicropolarNeoHookean, MicropolarStVenantKirchhoff
     from magshell.model import Model, Shell
-    from magshell.solver import Observer, Path, Settings, Step, solve
+    from magshell.solver import CriticalPoint, Observer, Path, Settings, Step, solve
+    from magshell.stages import Stage
     from magshell.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane
 
 __version__ = "0.1.0"
@@ -37,7 +38,8 @@ _HOME = {
     ),
     "magshell.materials": ("MicropolarMooneyRivlin", "MicropolarNeoHookean", "MicropolarStVenantKirchhoff"),
     "magshell.model": ("Model", "Shell"),
-    "magshell.solver": ("Observer", "Path", "Settings", "Step", "solve"),
+    "magshell.solver": ("CriticalPoint", "Observer", "Path", "Settings", "Step", "solve"),
+    "magshell.stages": ("Stage",),
     "magshell.supports": ("Clamp", "Prescribe", "SimpleSupport", "SymmetryPlane"),
 }
 _MODULES = {"mesh": "magshell.mesh", "problem": "magshell.problem", "remanence": "magshell.magnetics.remanence"}
@@ -45,6 +47,7 @@ _NAMES = {name: home for home, names in _HOME.items() for name in names}
 
 __all__ = [
     "Clamp",
+    "CriticalPoint",
     "DeformationGradientEnergy",
     "Force",
     "Gravity",
@@ -65,6 +68,7 @@ __all__ = [
     "Shell",
     "SimpleSupport",
     "SolveError",
+    "Stage",
     "Step",
     "SymmetryPlane",
     "Traction",

@@ -11,6 +11,10 @@ import scipy.sparse as sp
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
+from magshell.external import External
+from magshell.frames import to_frames, to_global
+from magshell.loading import Loading
+from magshell.loads import Pairs
 from magshell.materials.law import strain_energy
 from magshell.model import Model
 from magshell.nodal import COLUMNS, COMPONENTS
@@ -118,9 +122,8 @@ class Discretisation:
             (self._out.data, self.pattern.indices, self.pattern.indptr.astype(self.pattern.indices.dtype)),
             shape=(self.dofs, self.dofs),
         )
-        self._loads = self.to_frames(model.nodal_loads)
-        self._load_squares = np.array([np.sum(self._loads[:, columns] ** 2) for columns in COLUMNS.values()])
-        self._transport = self._spin_transport()
+        turning = np.all(self.equations.number[:, COLUMNS["omega"]] >= 0, axis=1)
+        self.external = External(model.applied, model.constraints, self._places, turning)
 
     def _number_equations(self, ordering: Ordering) -> None:
         mesh, constraints = self.mesh, self.model.constraints
@@ -143,7 +146,7 @@ class Discretisation:
         first[order] = np.cumsum(counts[order]) - counts[order]
         rank = np.cumsum(free, axis=1) - 1
         number = np.where(free, first[:, None] + rank, -1)
-        self.pattern, row_offset = pattern_of(graph, order, counts)
+        self.pattern, self._row_offset = pattern_of(graph, order, counts)
         layout = self.body.layout
         carrying = [layout.u] * 3 + [layout.w] * 3 + [layout.phi] + [layout.q] * 3
         local_node = np.concatenate([np.arange(count) for count in carrying])
@@ -151,7 +154,7 @@ class Discretisation:
         pairs = mesh.elements
         offset = (
             np.asarray(
-                row_offset[np.repeat(pairs, per_element, axis=1).ravel(), np.tile(pairs, (1, per_element)).ravel()]
+                self._row_offset[np.repeat(pairs, per_element, axis=1).ravel(), np.tile(pairs, (1, per_element)).ravel()]
             ).reshape(len(pairs), per_element, per_element)
             - 1
         )
@@ -194,7 +197,7 @@ class Discretisation:
     def assemble(
         self,
         state: State,
-        load_factor: float,
+        loading: Loading,
         stresses: loops.Stresses | None = None,
         imposed: FloatArray | None = None,
         tangent: bool = True,
@@ -204,7 +207,8 @@ class Discretisation:
         Parameters
         ----------
         state : State
-        load_factor : float
+        loading : Loading
+            Of the field and the loads; what is held is the state's.
         stresses : Stresses, optional
             For the geometric part of the mixed tangent; None: the state's own, the plain tangent.
         imposed : ndarray, shape (nodes, 10), optional
@@ -225,77 +229,64 @@ class Discretisation:
         if imposed is None:
             imposed = np.zeros_like(out.residual)
         element, determinant = loops.assemble(
-            model.shell.material, model.shell.material.couple_modulus, model.coupling,
-            load_factor * model.field.vector, self.body, state, stresses, mixed, tangent, imposed,
-            self.equations, out,
+            model.shell.material, model.shell.material.couple_modulus, model.coupling, loading.flux_density,
+            self.body, state, stresses, mixed, tangent, imposed, self.equations, out,
         )  # fmt: skip
         if element >= 0:
             raise InvertedElement(element, determinant)
-        self._add_loads(load_factor, tangent)
+        forces = self.external.forces(state, loading.loads)
+        local = self.to_frames(forces)
+        out.residual[:] -= local
         right_side = np.zeros(self.dofs)
         matrix = None
         if tangent:
-            right_side[self._free_index] = -out.condensed[self.free]
+            self.external.add_stiffness(state, loading.loads, forces, out.data)
+            right_side[self._free_index] = (local - out.condensed)[self.free]
             matrix = self._matrix
-        return Assembly(matrix, right_side, out.residual.copy(), self._relative_residual(load_factor))
+        return Assembly(matrix, right_side, out.residual.copy(), self._relative_residual(local))
 
     def load_direction(
-        self, state: State, load_factor: float, stresses: loops.Stresses | None, residual: FloatArray
+        self, state: State, loading: Loading, rate: Loading, stresses: loops.Stresses | None, assembly: Assembly
     ) -> FloatArray:
         """Right side (dofs,) of the tangent for the increment of the unknowns per load factor.
 
-        Field and loads are linear in the load factor. `residual` is that of the state.
+        Residuals are linear in the flux density. `rate` is the derivative of the loading with respect to the load
+        factor, `assembly` that of the state with the same stresses and nothing imposed.
         """
-        ahead = self.assemble(state, load_factor + 1.0, tangent=False).residual
-        right_side = np.zeros(self.dofs)
-        right_side[self._free_index] = (residual - ahead)[self.free]
-        imposed = self.imposed(1.0)
-        if np.any(imposed):
-            held = self.assemble(state, load_factor, stresses).right_side
-            right_side += self.assemble(state, load_factor, stresses, imposed).right_side - held
-        return right_side
+        direction = np.zeros(self.dofs)
+        if np.any(rate.flux_density):
+            ahead = self.assemble(state, loading.plus(rate), tangent=False).residual
+            direction[self._free_index] = (assembly.residual - ahead)[self.free]
+        else:
+            forces = self.to_frames(self.external.forces(state, rate.loads))
+            direction[self._free_index] = forces[self.free]
+        if np.any(rate.held):
+            moving = self.assemble(state, loading, stresses, self.imposed(rate.held)).right_side
+            direction += moving - assembly.right_side
+        return direction
 
-    def _add_loads(self, load_factor: float, tangent: bool) -> None:
-        """Take the loads, which are dead, off the residual, and the transport of their couples off the tangent."""
-        out, loads = self._out, load_factor * self._loads
-        out.residual[:] -= loads
-        if tangent:
-            out.condensed[:] -= loads
-            at, values = self._transport
-            out.data[at] += load_factor * values
+    def _places(self, pairs: Pairs) -> IntArray:
+        """Positions (n, 3, 3) in the tangent's values of the blocks of pairs; -1 where a component is held."""
+        if not pairs.rows.size:
+            return np.empty((0, 3, 3), dtype=np.int64)
+        number, rank = self.equations.number, self.equations.rank
+        rows, columns = COLUMNS[pairs.row_field], COLUMNS[pairs.column_field]
+        offset = np.asarray(self._row_offset[pairs.columns, pairs.rows]).reshape(-1) - 1
+        row_number, column_number = number[pairs.rows, rows], number[pairs.columns, columns]
+        column_start = np.asarray(self.pattern.indptr)[column_number]
+        at = column_start[:, None, :] + offset[:, None, None] + rank[pairs.rows, rows][:, :, None]
+        return np.where((row_number[:, :, None] >= 0) & (column_number[:, None, :] >= 0), at, -1)
 
-    def _spin_transport(self) -> tuple[IntArray, FloatArray]:
-        """Places in the tangent of -[c]×/2, and its values, for the dead couples c of the nodes at load factor 1.
-
-        Elements differentiate in the chart exp(ϑ) R̃, in which a couple c on the spins of the new state is
-        c + c × ϑ / 2: so K = K_chart - [c]×/2, with the sum c of the couples of a node's elements. (On those spins a
-        dead couple is constant and adds nothing.) In equilibrium c is the dead couple where no rotation is held. Where
-        exactly one is, the loops over elements have all of c, load and reaction; where more are, [c]× does not meet
-        two free rotations.
-        """
-        numbers = self.equations.number[:, COLUMNS["omega"]]
-        couples = self._loads[:, COLUMNS["omega"]]
-        nodes = np.flatnonzero(np.any(couples, axis=1) & np.all(numbers >= 0, axis=1))
-        if not nodes.size:
-            return np.empty(0, dtype=np.int64), np.empty(0)
-        rows, columns = (
-            numbers[nodes][:, [*rotation.NEXT, *rotation.LAST]],
-            numbers[nodes][:, [*rotation.LAST, *rotation.NEXT]],
-        )
-        entry = self._matrix.copy()
-        entry.data = np.arange(1.0, entry.nnz + 1.0)
-        at = np.asarray(entry[rows.ravel(), columns.ravel()]).astype(np.int64) - 1
-        return at, np.hstack([0.5 * couples[nodes], -0.5 * couples[nodes]]).ravel()
-
-    def _relative_residual(self, load_factor: float) -> dict[str, float]:
-        """Norms by kind above their round-off, over the elements' forces and the loads of that kind.
+    def _relative_residual(self, loads: FloatArray) -> dict[str, float]:
+        """Norms by kind above their round-off, over the elements' forces and the loads (nodes, 10) of that kind.
 
         α has the unit of w (both work on directors) and is measured against the same forces.
         """
         residual = np.where(self.free, self._out.residual, 0.0)
         norms = [float(np.linalg.norm(residual[:, columns])) for columns in COLUMNS.values()]
         norms.append(float(np.sqrt(self._out.enhancement_residual[0])))
-        scales = np.sqrt(self._out.scale.sum(axis=1) + load_factor**2 * self._load_squares)
+        squares = np.array([np.sum(loads[:, columns] ** 2) for columns in COLUMNS.values()])
+        scales = np.sqrt(self._out.scale.sum(axis=1) + squares)
         above = np.maximum(np.array(norms) - self._noise, 0.0)
         relative = np.divide(above, scales[[0, 1, 2, 3, 1]], out=above.copy(), where=above > 0.0)
         return dict(zip(KINDS, relative.tolist(), strict=True))
@@ -308,30 +299,20 @@ class Discretisation:
 
     def to_global(self, nodal: FloatArray) -> FloatArray:
         """Turn nodal columns (nodes, 10) from the nodes' frames to the global axes."""
-        return self._turned(nodal, "nji,nj->ni")
+        return to_global(self.model.constraints, nodal)
 
     def to_frames(self, nodal: FloatArray) -> FloatArray:
         """Turn nodal columns (nodes, 10) from the global axes to the nodes' frames."""
-        return self._turned(nodal, "nij,nj->ni")
+        return to_frames(self.model.constraints, nodal)
 
-    def _turned(self, nodal: FloatArray, rule: str) -> FloatArray:
-        turned, constraints = nodal.copy(), self.model.constraints
-        for field, columns in enumerate(COLUMNS[name] for name in ("u", "w", "omega")):
-            oblique = np.flatnonzero(constraints.frame_of[:, field] >= 0)
-            frames = constraints.frames[constraints.frame_of[oblique, field]]
-            turned[oblique, columns] = np.einsum(rule, frames, nodal[oblique, columns])
-        return turned
+    def imposed(self, held: FloatArray) -> FloatArray:
+        """What is held of nodal values (nodes, 10) in the nodes' frames; zero elsewhere."""
+        return np.where(self.model.constraints.fixed, held, 0.0)
 
-    def imposed(self, d_factor: float) -> FloatArray:
-        """Increments (nodes, 10) of the held components, in the nodes' frames, for an increment of the load factor."""
-        return np.where(self.model.constraints.fixed, d_factor * self.model.constraints.value, 0.0)
-
-    def with_imposed(self, increment: FloatArray, d_factor: float) -> FloatArray:
-        """A nodal increment in global axes whose held components are put to what the load factor asks."""
-        local = self.to_frames(increment)
+    def with_imposed(self, increment: FloatArray, held: FloatArray) -> FloatArray:
+        """A nodal increment in global axes whose held components are put to values in the nodes' frames."""
         fixed = self.model.constraints.fixed
-        local[fixed] = self.imposed(d_factor)[fixed]
-        return self.to_global(local)
+        return self.to_global(np.where(fixed, held, self.to_frames(increment)))
 
     def recover(self, increment: FloatArray) -> FloatArray:
         """Δα (elements, modes, 3) of the last assembled tangent for a nodal increment in global axes."""

@@ -1,4 +1,4 @@
-"""The problem as immutable data: shell, supports, field, coupling law, probes, loads; validated once."""
+"""The problem as immutable data: shell, supports, field, loads and their stages, probes; validated once."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ from numpy.typing import ArrayLike
 
 from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError, suggest
-from magshell.loads import Load, nodal_forces
+from magshell.history import amplitudes
+from magshell.loading import Amounts, Course, Loading
+from magshell.loads import Applied, Load
 from magshell.magnetics.deformation_gradient_energy import DeformationGradientEnergy
 from magshell.magnetics.field import UniformField
 from magshell.magnetics.micropolar_couple import MicropolarCouple
@@ -22,6 +24,8 @@ from magshell.mesh import Mesh
 from magshell.rigid import check_supported
 from magshell.shell.elements import ELEMENTS, QUADRATIC
 from magshell.shell.normals import nodal_normals
+from magshell.shell.state import State
+from magshell.stages import Stage
 from magshell.supports import Constraints, Support, SymmetryPlane, resolve
 
 STRETCHES = ("linear", "none", "plane-stress")
@@ -50,6 +54,8 @@ class Shell:
     thickness_stretch : {"linear", "none", "plane-stress"}, optional
         Stretch of the thickness that varies linearly across it: an unknown φ, absent (this locks in bending), or
         eliminated at each point so that P33 has no moment.
+    density : float, optional
+        Mass per undeformed volume, kg/m³; gravity needs it.
     micro_rotation : bool, optional
         False: the classical shell of seven parameters (u, w, φ). The material's coupling_modulus and length_scale must
         then be 0, and only `DeformationGradientEnergy` can couple a field to it.
@@ -67,6 +73,7 @@ class Shell:
     element: Any = QUADRATIC
     thickness_stretch: str = "linear"
     micro_rotation: bool = True
+    density: float | None = None
 
     def __post_init__(self) -> None:
         thickness = _positive("shell: thickness", self.thickness, "m")
@@ -74,6 +81,8 @@ class Shell:
             raise InputError(
                 f"shell: thickness is {thickness:g} m, larger than the body ({self.mesh.size:g} m); check the units"
             )
+        if self.density is not None:
+            object.__setattr__(self, "density", _positive("shell: density", self.density, "kg/m^3"))
         values = []
         for name, value in zip(self.material._fields, self.material, strict=True):
             value = float(value)
@@ -128,20 +137,23 @@ class Model:
     probes : mapping of str to (3,) array_like, optional
         Reference positions of nodes to follow, m.
     loads : sequence of Load
-        `Force`, `Moment`.
+        `Force`, `Moment`, `Traction`, `Pressure`, `Gravity`.
+    stages : sequence of Stage, optional
+        Parts of the load path in sequence; by default one under load control, or as many as the longest history has.
 
     Attributes
     ----------
     constraints : Constraints
         The supports, node by node.
-    nodal_loads : ndarray, shape (nodes, 10)
-        External forces at load factor 1 in global axes: N on u, N m on the spin.
+    applied : tuple of Applied
+        The loads, node by node.
+    probe_nodes : mapping of str to int
 
     Raises
     ------
     InputError
         Unknown groups, contradicting supports, a free rigid motion (named), probes that are not nodes, loads that make
-        no sense, or nothing that loads the shell.
+        no sense, histories that do not fit the stages, or nothing that loads the shell.
     """
 
     shell: Shell
@@ -150,9 +162,11 @@ class Model:
     coupling: Any = None
     probes: Mapping[str, ArrayLike] = dataclasses.field(default_factory=dict)
     loads: Sequence[Load] = ()
+    stages: Sequence[Stage] = ()
     constraints: Constraints = dataclasses.field(init=False, repr=False)
-    nodal_loads: FloatArray = dataclasses.field(init=False, repr=False)
+    applied: tuple[Applied, ...] = dataclasses.field(init=False, repr=False)
     probe_nodes: Mapping[str, int] = dataclasses.field(init=False, repr=False)
+    _ends: tuple[Amounts, ...] = dataclasses.field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         mesh = self.shell.mesh
@@ -160,9 +174,10 @@ class Model:
         if self.coupling is None:
             put(self, "coupling", MicropolarCouple() if self.shell.micro_rotation else DeformationGradientEnergy())
         put(self, "supports", tuple(self.supports))
-        put(self, "constraints", resolve(mesh, self.supports, self.shell.carriers))
         put(self, "loads", tuple(self.loads))
-        put(self, "nodal_loads", nodal_forces(mesh, self.shell.element, self.loads))
+        put(self, "stages", tuple(self.stages) or (Stage(),) * self._longest_history())
+        put(self, "constraints", resolve(mesh, self.supports, self.shell.carriers, len(self.stages)))
+        put(self, "applied", tuple(load.applied(self.shell, self.normals) for load in self.loads))
         nodes = {}
         for name, position in self.probes.items():
             try:
@@ -170,6 +185,10 @@ class Model:
             except InputError as error:
                 raise InputError(f"probe '{name}': {error}") from None
         put(self, "probe_nodes", MappingProxyType(nodes))
+        for stage in self.stages:
+            if stage.probe is not None and stage.probe not in nodes:
+                raise InputError(f"stage '{stage.name}': probe '{stage.probe}' is unknown. {suggest(stage.probe, nodes)}")
+        put(self, "_ends", self._amounts_at_the_ends())
         check_supported(mesh, self.normals, self.constraints)
         self._check_the_micro_rotation_matters()
         self._check_something_loads()
@@ -177,7 +196,7 @@ class Model:
     def _check_the_micro_rotation_matters(self) -> None:
         if self.shell.material.coupling_modulus > 0.0:
             return
-        if np.any(self.nodal_loads[:, 7:]):
+        if any(np.any(forces[:, 7:]) for forces in self._forces_at_rest()):
             worker = "a moment"
         elif self.field.magnitude > 0.0 and not isinstance(self.coupling, DeformationGradientEnergy):
             worker = type(self.coupling).__name__
@@ -192,13 +211,44 @@ class Model:
 
     def _check_something_loads(self) -> None:
         mesh = self.shell.mesh
-        if np.any(self.constraints.value) or np.any(self.nodal_loads):
+        if any(np.any(amounts.held) or np.any(amounts.loads) for amounts in self._ends):
             return
         otherwise = "and no support moves, nor is there a load: nothing loads the shell"
-        if self.field.magnitude == 0.0:
+        if not any(amounts.field * self.field.magnitude for amounts in self._ends):
             raise InputError(f"field: flux_density is zero {otherwise}")
         if not np.any(self.shell.remanence(mesh, mesh.points[mesh.elements])):
             raise InputError(f"remanence: it is zero everywhere {otherwise}")
+
+    def _forces_at_rest(self) -> list[FloatArray]:
+        nodes = len(self.shell.mesh.points)
+        state = State.undeformed(nodes, len(self.shell.mesh.elements), self.shell.element.vectors)
+        return [applied.forces(state) for applied in self.applied]
+
+    def _longest_history(self) -> int:
+        owners = (self.field, *self.loads, *self.supports)
+        histories = (getattr(owner, name, None) for owner in owners for name in ("history", "rotation"))
+        return max((len(history) for history in histories if history is not None), default=1)
+
+    def _amounts_at_the_ends(self) -> tuple[Amounts, ...]:
+        """What varies along the path, undeformed and at the end of each stage."""
+        count = len(self.stages)
+        field = np.append(0.0, amplitudes(self.field.history, count, "field"))
+        turned = np.zeros(count + 1)
+        if self.field.rotation is not None:
+            turned[1:] = amplitudes(self.field.rotation, count, "field: rotation")
+        loads = np.zeros((count + 1, len(self.loads)))
+        for number, load in enumerate(self.loads):
+            loads[1:, number] = amplitudes(load.history, count, f"loads: {load.kind} on '{load.group}'")
+        held = np.concatenate([np.zeros_like(self.constraints.values[:1]), self.constraints.values])
+        return tuple(Amounts(float(field[k]), float(turned[k]), loads[k], held[k]) for k in range(count + 1))
+
+    def course(self, stage: int, start: Amounts | None = None) -> Course:
+        """The loading of a stage that starts from given amounts; by default from where histories put its start."""
+        return Course(self.stages[stage], self.field, start or self._ends[stage], self._ends[stage + 1])
+
+    def loading(self, load_factor: float) -> Loading:
+        """The loading in the first stage."""
+        return self.course(0).at(load_factor)
 
     @cached_property
     def normals(self) -> FloatArray:

@@ -6,6 +6,7 @@ import time
 from types import TracebackType
 from typing import TYPE_CHECKING
 
+import numpy as np
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
@@ -16,6 +17,7 @@ from magshell.units import FLUX_DENSITY, show
 
 if TYPE_CHECKING:
     from magshell.assembly import Discretisation
+    from magshell.solver.critical import CriticalPoint
     from magshell.solver.events import Iteration
     from magshell.solver.path import Path, Step
     from magshell.solver.settings import Settings
@@ -62,7 +64,7 @@ class ProgressDisplay(Observer):
 
     def started(self, discretisation: Discretisation, settings: Settings) -> None:
         """Name the size and the linear solver; say so if the kernels must be compiled first."""
-        self._magnitude = discretisation.model.field.magnitude
+        self._stages = discretisation.model.stages
         elements, unknowns = len(discretisation.mesh.elements), discretisation.dofs
         solver = make_solver(settings.linear_solver).name
         self._line(f"{elements} elements, {unknowns} unknowns, linear solver: {solver}")
@@ -76,7 +78,7 @@ class ProgressDisplay(Observer):
             self._bar.update(
                 self._task,
                 description=(
-                    f"step {iteration.step}  to {self._load(iteration.load_factor)}  "
+                    f"step {iteration.step}  to {self._load(iteration)}  "
                     f"iteration {iteration.iteration}  residual {iteration.residual:.1e}"
                 ),
             )
@@ -84,33 +86,51 @@ class ProgressDisplay(Observer):
     def converged(self, step: Step) -> None:
         """Move the bar, or write a line."""
         if self._live:
-            self._bar.update(self._task, completed=step.load_factor)
+            self._bar.update(self._task, completed=(step.stage + max(step.load_factor, 0.0)) / len(self._stages))
         elif step.number:
             self._line(
-                f"step {step.number}  {self._load(step.load_factor)}  {step.iterations} iterations  "
+                f"step {step.number}  {self._load(step)}{_field(step)}  {step.iterations} iterations  "
                 f"residual {step.residual:.1e}  {time.monotonic() - self._began:.1f} s"
             )
 
     def cut(self, load_factor: float, reason: str) -> None:
         """Say that a step is tried again, shorter."""
         if self._live:
-            self._bar.update(self._task, description=f"step to {self._load(load_factor)} cut: {reason}")
+            self._bar.update(self._task, description=f"step to {_percent(load_factor)} cut: {reason}")
         else:
-            self._line(f"step to {self._load(load_factor)} cut: {reason}")
+            self._line(f"step to {_percent(load_factor)} cut: {reason}")
+
+    def critical(self, point: CriticalPoint) -> None:
+        """Say what was passed."""
+        before, after = point.negative_pivots
+        pivots = f"; negative pivots {before} before, {after} after" if None not in (before, after) else ""
+        self._line(f"critical point {point.number}: {point.kind} at {self._load(point)}{_field(point)}{pivots}")
 
     def finished(self, path: Path) -> None:
         """Say how it ended."""
         self.path = path
         if path.steps:
+            last = path.steps[-1]
             self._line(
-                f"{'solved' if path.converged else 'stopped'} at {self._load(path.steps[-1].load_factor)}: "
+                f"{'solved' if path.converged else 'stopped'} at {self._load(last)}{_field(last)}: "
                 f"{len(path.steps) - 1} steps, {path.solves} linear solves, "
                 f"{time.monotonic() - self._began:.1f} s"
             )
 
-    def _load(self, load_factor: float) -> str:
-        percent = f"{100.0 * load_factor:.4g} %"
-        return f"{percent} ({show(load_factor * self._magnitude, FLUX_DENSITY)})" if self._magnitude else percent
+    def _load(self, at: Step | CriticalPoint | Iteration) -> str:
+        """The load factor, and of several stages which."""
+        if len(self._stages) == 1:
+            return _percent(at.load_factor)
+        return f"{_percent(at.load_factor)} of {self._stages[at.stage].name or f'stage {at.stage + 1}'}"
 
     def _line(self, text: str) -> None:
         self._console.print(text, soft_wrap=True)
+
+
+def _percent(load_factor: float) -> str:
+    return f"{100.0 * load_factor:.4g} %"
+
+
+def _field(at: Step | CriticalPoint) -> str:
+    magnitude = float(np.linalg.norm(at.flux_density))
+    return f" ({show(magnitude, FLUX_DENSITY)})" if magnitude else ""

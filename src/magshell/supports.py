@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError, suggest
+from magshell.history import amplitudes
 from magshell.mesh import Mesh
 from magshell.nodal import COLUMNS
 
@@ -19,7 +20,7 @@ AXES = np.eye(3)
 
 
 class Condition(NamedTuple):
-    """direction · field = value at load factor 1, on every node of a group.
+    """direction · field = value, times the multiplier of the history, on every node of a group.
 
     `optional` conditions skip nodes that do not carry the field, as some mid-side nodes do not.
     """
@@ -29,6 +30,7 @@ class Condition(NamedTuple):
     direction: FloatArray
     value: float
     optional: bool
+    history: Sequence[float] | None = None
 
 
 class Support(Protocol):
@@ -103,7 +105,7 @@ class SymmetryPlane:
 
 @dataclass(frozen=True)
 class Prescribe:
-    """A value at load factor 1 for a field, or one component of it, growing in proportion to the load factor.
+    """A value for a field, or one component of it.
 
     Parameters
     ----------
@@ -115,12 +117,15 @@ class Prescribe:
         None: all three (φ has none).
     value : float or array_like, shape (3,)
         A vector where all three components are meant; one number holds for each component named.
+    history : sequence of float, optional
+        Multiplier of the value at the end of each stage of the path; by default it grows to 1 in the first and stays.
     """
 
     group: str
     field: str
     component: int | None = None
     value: ArrayLike = 0.0
+    history: Sequence[float] | None = None
 
     def conditions(self) -> Iterator[Condition]:
         """One per component."""
@@ -138,12 +143,12 @@ class Prescribe:
             if value.shape != ():
                 raise InputError(f"{where}: value is {self.value!r}; one component takes one number")
             axis = AXES[(self.component or 1) - 1]
-            yield Condition(self.group, self.field, axis, float(value), optional=False)
+            yield Condition(self.group, self.field, axis, float(value), False, self.history)
             return
         if value.shape not in ((), (3,)):
             raise InputError(f"{where}: value has shape {value.shape}; it takes 3 numbers, or one for all components")
         for axis, component in zip(AXES, np.broadcast_to(value, 3), strict=True):
-            yield Condition(self.group, self.field, axis, float(component), optional=False)
+            yield Condition(self.group, self.field, axis, float(component), False, self.history)
 
 
 Supports: TypeAlias = Sequence[Support]
@@ -156,8 +161,8 @@ class Constraints(NamedTuple):
     ----------
     fixed : ndarray of bool, shape (nodes, 10)
         In the node's frame.
-    value : ndarray, shape (nodes, 10)
-        At load factor 1, in the node's frame.
+    values : ndarray, shape (stages, nodes, 10)
+        At the end of each stage, in the node's frame.
     frame_of : ndarray, shape (nodes, 3)
         Frame of u, w and ω, -1 for the global axes.
     frames : ndarray, shape (frames, 3, 3)
@@ -165,16 +170,16 @@ class Constraints(NamedTuple):
     """
 
     fixed: AnyBool
-    value: FloatArray
+    values: FloatArray
     frame_of: IntArray
     frames: FloatArray
 
 
 AnyBool: TypeAlias = np.typing.NDArray[np.bool_]
-_FRAME = {"u": 0, "w": 1, "omega": 2}
+FRAME_OF_FIELD = {"u": 0, "w": 1, "omega": 2}
 
 
-def resolve(mesh: Mesh, supports: Supports, carriers: Mapping[str, AnyBool]) -> Constraints:
+def resolve(mesh: Mesh, supports: Supports, carriers: Mapping[str, AnyBool], stages: int = 1) -> Constraints:
     """Conditions of all supports as fixed components, with frames of their own where directions are oblique.
 
     Parameters
@@ -183,17 +188,20 @@ def resolve(mesh: Mesh, supports: Supports, carriers: Mapping[str, AnyBool]) -> 
     supports : sequence of Support
     carriers : mapping of str to (nodes,) ndarray of bool
         Which nodes carry the fields u, w, phi and omega.
+    stages : int
+        Of the path.
 
     Raises
     ------
     InputError
-        Unknown group, a field that a node does not carry, supports that contradict each other.
+        Unknown group, a field that a node does not carry, supports that contradict each other, a history of a wrong
+        length.
     """
     nodes = len(mesh.points)
-    fixed, value = np.zeros((nodes, 10), dtype=bool), np.zeros((nodes, 10))
+    fixed, values = np.zeros((nodes, 10), dtype=bool), np.zeros((stages, nodes, 10))
     frame_of = np.full((nodes, 3), -1)
     frames: list[FloatArray] = []
-    directions: dict[tuple[int, str], list[tuple[FloatArray, float, str]]] = {}
+    directions: dict[tuple[int, str], list[tuple[FloatArray, FloatArray, str]]] = {}
     for support in supports:
         for condition in support.conditions():
             members = mesh.nodes_of(condition.group)
@@ -207,43 +215,46 @@ def resolve(mesh: Mesh, supports: Supports, carriers: Mapping[str, AnyBool]) -> 
                     )
                     raise InputError(f"support on '{condition.group}': {absent} '{condition.field}'")
                 members = members[carries]
+            value = condition.value * amplitudes(condition.history, stages, f"support on '{condition.group}'")
             for node in members:
                 directions.setdefault((int(node), condition.field), []).append(
-                    (condition.direction, condition.value, condition.group)
+                    (condition.direction, value, condition.group)
                 )
     for (node, field), wanted in directions.items():
         column = COLUMNS[field].start
-        base, values = _orthonormal(node, field, wanted)
+        base, held = _orthonormal(node, field, wanted)
         if field == "phi":
-            fixed[node, column], value[node, column] = True, values[0]
+            fixed[node, column], values[:, node, column] = True, held[0]
         elif np.all(np.max(np.abs(base), axis=1) > 1.0 - 1e-12):
-            for vector, held in zip(base, values, strict=True):
+            for vector, one in zip(base, held, strict=True):
                 axis = int(np.argmax(np.abs(vector)))
-                fixed[node, column + axis], value[node, column + axis] = True, held * np.sign(vector[axis])
+                fixed[node, column + axis], values[:, node, column + axis] = True, one * np.sign(vector[axis])
         else:
-            frame_of[node, _FRAME[field]] = len(frames)
+            frame_of[node, FRAME_OF_FIELD[field]] = len(frames)
             complement = np.linalg.svd(base)[2][len(base) :]
             frames.append(np.vstack([base, complement]))
             fixed[node, column : column + len(base)] = True
-            value[node, column : column + len(base)] = values
-    return Constraints(fixed, value, frame_of, np.array(frames).reshape(-1, 3, 3))
+            values[:, node, column : column + len(base)] = held.T
+    return Constraints(fixed, values, frame_of, np.array(frames).reshape(-1, 3, 3))
 
 
-def _orthonormal(node: int, field: str, wanted: list[tuple[FloatArray, float, str]]) -> tuple[FloatArray, FloatArray]:
-    """Orthonormal directions and their values that say the same as all conditions of one node's field."""
+def _orthonormal(
+    node: int, field: str, wanted: list[tuple[FloatArray, FloatArray, str]]
+) -> tuple[FloatArray, FloatArray]:
+    """Orthonormal directions and their values, by stage, that say the same as all conditions of one node's field."""
     base: list[FloatArray] = []
-    values: list[float] = []
+    values: list[FloatArray] = []
     for direction, wanted_value, group in wanted:
         rest: FloatArray = direction.copy()
         left = wanted_value
         for known, held in zip(base, values, strict=True):
             rest = rest - (direction @ known) * known
-            left -= float(direction @ known) * held
+            left = left - float(direction @ known) * held
         length = float(np.linalg.norm(rest))
         if length > 1e-9:
             base.append(rest / length)
             values.append(left / length)
-        elif abs(left) > 1e-9 * max(abs(wanted_value), *(abs(held) for held in values)):
+        elif np.abs(left).max() > 1e-9 * max(np.abs(one).max() for one in (wanted_value, *values)):
             others = sorted({other for _, _, other in wanted} - {group})
             raise InputError(
                 f"supports: they contradict each other at node {node}: '{group}' wants another {field} than "

@@ -58,7 +58,7 @@ def test_nothing_that_loads_the_shell():
     with pytest.raises(InputError, match="remanence: it is zero everywhere and no support moves"):
         ms.Model(shell(remanence=ms.remanence.constant((0.0, 0.0, 0.0))), [ms.Clamp("left")], FIELD)
     lifted = [ms.Clamp("left"), ms.Prescribe("right", "u", 3, 0.1)]
-    assert np.any(ms.Model(shell(), lifted, none).constraints.value)
+    assert np.any(ms.Model(shell(), lifted, none).constraints.values[0])
 
 
 def test_normals_of_a_flat_mesh():

@@ -38,7 +38,7 @@ def held(mesh, element, *supports):
     """Held components and their values, no node having a frame of its own."""
     constraints = constrained(mesh, supports, element)
     assert np.all(constraints.frame_of < 0)
-    return constraints.fixed, constraints.value
+    return constraints.fixed, constraints.values[0]
 
 
 @each_element
@@ -119,7 +119,7 @@ def test_supports_that_say_the_same_twice_agree(mesh):
     both = constrained(mesh, [Prescribe("left", "u", value=(1.0, -1.0, 0.5)), SymmetryPlane("left", (1.0, 1.0, 0.0))])
     nodes = mesh.nodes_of("left")
     assert both.fixed[nodes][:, U].all()
-    assert np.array_equal(both.value[nodes][:, U], np.broadcast_to((1.0, -1.0, 0.5), (len(nodes), 3)))
+    assert np.array_equal(both.values[0][nodes][:, U], np.broadcast_to((1.0, -1.0, 0.5), (len(nodes), 3)))
     assert constrained(mesh, [Clamp("left"), SymmetryPlane("left", (1.0, 1.0, 0.0))]).fixed[nodes][:, U].all()
 
 
@@ -130,7 +130,7 @@ def test_slanted_and_straight_conditions_combine(mesh):
     node = mesh.nodes_of("origin")[0]
     frame, fixed = constraints.frames[constraints.frame_of[node, 0]], constraints.fixed[node, U]
     assert fixed.sum() == 2
-    u = frame.T @ np.where(fixed, constraints.value[node, U], [9.0, 9.0, 9.0])
+    u = frame.T @ np.where(fixed, constraints.values[0][node, U], [9.0, 9.0, 9.0])
     assert u @ normal == pytest.approx(0.0, abs=1e-14)
     assert u[2] == pytest.approx(0.4, rel=1e-14)
 

@@ -30,8 +30,8 @@ def respond(model: ms.Model) -> Response:
     """The response of a model whose load at load factor 1 is small: its own stiffness is left out."""
     d = Discretisation(model, nested_dissection)
     start = d.undeformed()
-    right_side = d.assemble(start, 1.0).right_side
-    matrix = d.assemble(start, 0.0).matrix
+    right_side = d.assemble(start, d.model.loading(1.0)).right_side
+    matrix = d.assemble(start, d.model.loading(0.0)).matrix
     assert matrix is not None
     solver = make_solver("superlu")
     solver.factorise(matrix)

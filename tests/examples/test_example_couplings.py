@@ -66,7 +66,7 @@ def test_micro_rotation_energy_is_the_couple_of_a_remanence_that_does_not_stretc
     """R̃ B̃ in place of F B̃ changes the couples by |F B̃ - R̃ B̃| / |B̃| at most, and the tip by less, as it stiffens."""
     path = paths["couple"]
     body, steps = path.discretisation.body, path.steps
-    at_stops = [step for step in steps if step.load_factor in path.model.field.stop_factors]
+    at_stops = [step for step in steps if step.load_factor in path.model.course(0).stops()]
     couple, micro = _tip(path), _tip(paths["micro-rotation"])
     for step, one, other in zip(at_stops, couple, micro, strict=True):
         fields = evaluate(body, step.state)

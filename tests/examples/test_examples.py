@@ -85,7 +85,7 @@ every_problem = pytest.mark.parametrize("name", [name for example in EXAMPLES fo
 def test_path_hits_every_stop_and_the_end(name: str, solved) -> None:
     path = solved(name)
     factors = [step.load_factor for step in path.steps]
-    stops = path.model.field.stop_factors
+    stops = path.model.course(0).stops()
     assert set(stops) <= set(factors), f"{name}: stops {stops} are missed by {factors}"
     assert factors[0] == 0.0
     assert factors[-1] == 1.0
@@ -134,7 +134,7 @@ def test_what_unbalances_the_forces_is_the_residual_of_the_free_nodes(name: str,
     """Forces between elements cancel: all nodal residuals sum to zero, whatever the state."""
     path = solved(name)
     discretisation, step = path.discretisation, path.steps[-1]
-    residual = discretisation.assemble(step.state, step.load_factor, tangent=False).residual
+    residual = discretisation.assemble(step.state, discretisation.model.loading(step.load_factor), tangent=False).residual
     nodal = discretisation.to_global(residual)[:, :3]
     off = np.linalg.norm(nodal.sum(axis=0)) / np.linalg.norm(nodal, axis=1).sum()
     assert off < len(nodal) * np.finfo(float).eps, f"{name}: {off:.1e}"

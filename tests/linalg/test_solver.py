@@ -54,7 +54,7 @@ def test_badly_scaled_shell_matrix(name):
 def test_unsymmetric_matrix_is_not_transposed(name):
     """The couple's tangent at a random state, solved against NumPy."""
     d = free_body(PATCHES["curved patch"](), supports=(Clamp("left"),), ordering=nested_dissection)
-    matrix = d.assemble(random_state(d, 1), 1.0).matrix
+    matrix = d.assemble(random_state(d, 1), d.model.loading(1.0)).matrix
     dense = matrix.toarray()
     assert np.abs(dense - dense.T).max() > 1e-3
     solver = solver_or_skip(name)
@@ -71,7 +71,7 @@ def test_factorised_again(name):
     d = free_body(PATCHES["curved patch"](), supports=(Clamp("left"),), ordering=nested_dissection)
     solver = solver_or_skip(name)
     for seed in (1, 2):
-        matrix = d.assemble(random_state(d, seed), 1.0).matrix
+        matrix = d.assemble(random_state(d, seed), d.model.loading(1.0)).matrix
         solver.factorise(matrix)
         right_side = np.ones(d.dofs)
         error = np.abs(matrix @ solver.solve(right_side) - right_side).max()
@@ -91,12 +91,12 @@ def equal_rows():
 def free_matrix(supports):
     mesh = patch((3, 3), distortion=0.25, keep_boundary=True)
     d = free_body(mesh, supports=supports, ordering=nested_dissection)
-    return d.assemble(d.undeformed(), 0.0).matrix
+    return d.assemble(d.undeformed(), d.model.loading(0.0)).matrix
 
 
 def thin_matrix(supports):
     d = thin_strip(supports)
-    return d.assemble(d.undeformed(), 0.0).matrix
+    return d.assemble(d.undeformed(), d.model.loading(0.0)).matrix
 
 
 SINGULAR = {

@@ -313,19 +313,21 @@ def condensed(r, K):
 
 
 def stresses(d, state, e, variation):
-    """P (points, levels, 3, 3) and κ (points, 2, 3) of an element, and their derivatives along a variation (n,)."""
+    """S = U⁻¹ P (points, levels, 3, 3) and κ (points, 2, 3) of an element, and derivatives along a variation (n,)."""
     material, rule = d.model.shell.material, d.model.shell.element.rule
     energy = material_reference.ENERGIES[type(material)]
-    P, dP, κ, dκ = [], [], [], []
+    S, dS, κ, dκ = [], [], [], []
     for parent, weight in zip(*rule, strict=True):
         f, here = element_parts(d, state, e, parent, jets.variables(np.zeros(unknowns(d))))
         for F in deformation_gradients(f, point_of(d, here, e, weight, np.zeros(3))):
             U = rotation(f["q"]).T @ F
             W = energy(material, jets.variables(jets.value(U)))
-            P.append(W.gradient.reshape(3, 3))
-            dP.append((W.hessian @ (jets.gradient(U) @ variation).ravel()).reshape(3, 3))
+            dU = jets.gradient(U) @ variation
+            S.append(np.linalg.solve(jets.value(U), W.gradient.reshape(3, 3)))
+            dP = (W.hessian @ dU.ravel()).reshape(3, 3)
+            dS.append(np.linalg.solve(jets.value(U), dP - dU @ S[-1]))
         vectors = wryness_vectors(f)
         κ.append(jets.value(vectors))
         dκ.append(jets.gradient(vectors) @ variation)
     shape = (len(rule.weights), -1, 3, 3)
-    return np.reshape(P, shape), np.array(κ), np.reshape(dP, shape), np.array(dκ)
+    return np.reshape(S, shape), np.array(κ), np.reshape(dS, shape), np.array(dκ)

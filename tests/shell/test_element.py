@@ -39,7 +39,7 @@ def reference(d, state):
 def test_energy_residual_tangent_and_condensation(element, material, coupling, seed):
     d = free_body(SINGLES["curved"](), material, coupling, element=element)
     state = random_state(d, seed)
-    assembly = d.assemble(state, 1.0)
+    assembly = d.assemble(state, d.model.loading(1.0))
     energy, r, K = reference(d, state)
     r_condensed, K_condensed, offset, gain = oracle.condensed(r, K)
     right_side = np.zeros(d.free.size)
@@ -60,7 +60,7 @@ def test_energy_residual_tangent_and_condensation(element, material, coupling, s
 @each_combination
 def test_tangent_is_symmetric_exactly_for_conservative_laws(element, material, coupling):
     d = free_body(SINGLES["curved"](), material, coupling, element=element)
-    K = dense(d, d.assemble(random_state(d, 3), 1.0).matrix)
+    K = dense(d, d.assemble(random_state(d, 3), d.model.loading(1.0)).matrix)
     asymmetry = scaled_error(K, K.T)
     if magnetics.is_conservative(coupling):
         assert asymmetry < 1e-12, f"asymmetry {asymmetry:.1e}"
@@ -72,8 +72,8 @@ def test_tangent_is_symmetric_exactly_for_conservative_laws(element, material, c
 def test_mixed_tangent_with_the_states_own_stresses_is_the_plain_one(element, material, coupling):
     d = free_body(SINGLES["curved"](), material, coupling, element=element)
     state = random_state(d, 4)
-    plain, right_side = dense(d, d.assemble(state, 1.0).matrix), d.assemble(state, 1.0).right_side
-    mixed = d.assemble(state, 1.0, d.stresses_at(state))
+    plain, right_side = dense(d, d.assemble(state, d.model.loading(1.0)).matrix), d.assemble(state, d.model.loading(1.0)).right_side
+    mixed = d.assemble(state, d.model.loading(1.0), d.stresses_at(state))
     errors = scaled_error(dense(d, mixed.matrix), plain), scaled_error(mixed.right_side, right_side)
     assert max(errors) < 1e-13, f"tangent {errors[0]:.1e}, right side {errors[1]:.1e}"
 
@@ -82,9 +82,9 @@ def test_mixed_tangent_with_the_states_own_stresses_is_the_plain_one(element, ma
 def test_mixed_tangent_with_other_stresses_keeps_the_residual(coupling):
     d = free_body(SINGLES["curved"](), coupling=coupling)
     state, other = random_state(d, 4), random_state(d, 5)
-    plain = d.assemble(state, 1.0)
+    plain = d.assemble(state, d.model.loading(1.0))
     K, residual = dense(d, plain.matrix), plain.residual
-    mixed = d.assemble(state, 1.0, d.stresses_at(other))
+    mixed = d.assemble(state, d.model.loading(1.0), d.stresses_at(other))
     assert np.array_equal(mixed.residual, residual)
     change = scaled_error(dense(d, mixed.matrix), K)
     assert change > 1e-3, f"the tangent changes by {change:.1e}: the given stresses are not used"
@@ -94,8 +94,8 @@ def test_mixed_tangent_with_other_stresses_keeps_the_residual(coupling):
 def test_residual_alone_is_the_same(material):
     d = free_body(SINGLES["curved"](), material)
     state = random_state(d, 4)
-    with_tangent = d.assemble(state, 1.0).residual
-    alone = d.assemble(state, 1.0, tangent=False)
+    with_tangent = d.assemble(state, d.model.loading(1.0)).residual
+    alone = d.assemble(state, d.model.loading(1.0), tangent=False)
     assert alone.matrix is None
     assert np.array_equal(alone.residual, with_tangent)
 
@@ -105,12 +105,12 @@ def test_predicted_stresses_are_the_derivative_of_the_stresses(element, material
     d = free_body(SINGLES["curved"](), material, coupling, element=element)
     state, (increment, d_alpha) = random_state(d, 6), random_increment(d, 6)
     variation = np.concatenate([increment[d.mesh.elements[0]].ravel(), d_alpha[0].ravel()])
-    P, κ, dP, dκ = oracle.stresses(d, state, 0, variation)
+    S, κ, dS, dκ = oracle.stresses(d, state, 0, variation)
     own, predicted = d.stresses_at(state), d.predicted_stresses(state, increment, d_alpha)
     errors = {
-        "P": scaled_error(own.P[0].ravel(), P.ravel()),
+        "S": scaled_error(own.S[0].ravel(), S.ravel()),
         "κ": scaled_error(own.kappa[0].ravel(), κ.ravel()),
-        "ΔP": scaled_error((predicted.P - own.P)[0].ravel(), dP.ravel()),
+        "ΔS": scaled_error((predicted.S - own.S)[0].ravel(), dS.ravel()),
         "Δκ": scaled_error((predicted.kappa - own.kappa)[0].ravel(), dκ.ravel()),
     }
     assert max(errors.values()) < TOLERANCE, errors
@@ -133,8 +133,8 @@ def test_the_sign_of_a_nodes_quaternion_means_nothing():
     d = free_body(SINGLES["curved"]())
     state = random_state(d, 9)
     flipped = state._replace(q=state.q * np.where(np.arange(len(state.q)) % 3 == 0, -1.0, 1.0)[:, None])
-    first = d.assemble(state, 1.0)
+    first = d.assemble(state, d.model.loading(1.0))
     residual, K = first.residual, dense(d, first.matrix)
-    second = d.assemble(flipped, 1.0)
+    second = d.assemble(flipped, d.model.loading(1.0))
     errors = scaled_error(second.residual.ravel(), residual.ravel()), scaled_error(dense(d, second.matrix), K)
     assert max(errors) < 1e-14, errors

@@ -69,7 +69,7 @@ def test_superposed_rotation_of_body_and_field(element, material, coupling, angl
     state = random_state(d, 11)
     moved = superposed(d, state, Q, q)
     energy, energy_turned = d.element_energy(state).sum(), d_turned.element_energy(moved).sum()
-    first, second = d.assemble(state, 1.0), d_turned.assemble(moved, 1.0)
+    first, second = d.assemble(state, d.model.loading(1.0)), d_turned.assemble(moved, d_turned.model.loading(1.0))
     errors = {
         "energy": abs(energy_turned / energy - 1.0),
         "residual": scaled_error(second.residual, turned_rows(first.residual, Q)),
@@ -85,9 +85,9 @@ def test_rigid_rotation_alone_strains_nothing(element, angle):
     """The undeformed curved patch turned: energy and forces vanish beside those of a strain of 1 %."""
     d = free_body(PATCHES["curved patch"](), element=element, field=(0.0, 0.0, 0.0))
     energy = d.element_energy(superposed(d, d.undeformed(), *rotation_of(angle))).sum()
-    forces = np.abs(d.assemble(superposed(d, d.undeformed(), *rotation_of(angle)), 1.0).residual).max()
+    forces = np.abs(d.assemble(superposed(d, d.undeformed(), *rotation_of(angle)), d.model.loading(1.0)).residual).max()
     strained = random_state(d, 12, strain=0.01)
-    reference = d.element_energy(strained).sum(), np.abs(d.assemble(strained, 1.0).residual).max()
+    reference = d.element_energy(strained).sum(), np.abs(d.assemble(strained, d.model.loading(1.0)).residual).max()
     assert abs(energy) < 1e-10 * reference[0], f"energy {energy:.1e}, of the strain {reference[0]:.1e}"
     assert forces < 1e-11 * reference[1], f"forces {forces:.1e}, of the strain {reference[1]:.1e}"
 
@@ -104,7 +104,7 @@ def test_whole_problem_turned(element, material, coupling, angle):
     state = random_state(d, 13)
     micro = rotation.product(rotation.product(np.broadcast_to(q, state.q.shape), state.q), rotation.conjugate(q))
     moved = State(state.u @ Q.T, state.w @ Q.T, state.phi, micro, state.alpha @ Q.T)
-    first, second = d.assemble(state, 1.0), d_turned.assemble(moved, 1.0)
+    first, second = d.assemble(state, d.model.loading(1.0)), d_turned.assemble(moved, d_turned.model.loading(1.0))
     errors = {
         "energy": abs(d_turned.element_energy(moved).sum() / d.element_energy(state).sum() - 1.0),
         "residual": scaled_error(second.residual, turned_rows(first.residual, Q)),

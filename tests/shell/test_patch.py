@@ -100,7 +100,7 @@ def check_homogeneous(d, seed):
     turn = Rotation.random(rng=rng).as_matrix()
     F = turn @ (np.eye(3) + rng.uniform(-0.3, 0.3, (3, 3)))
     R = turn @ Rotation.from_rotvec(rng.uniform(-0.5, 0.5, 3)).as_matrix()
-    assembly = d.assemble(homogeneous(d, F, R), 1.0, tangent=False)
+    assembly = d.assemble(homogeneous(d, F, R), d.model.loading(1.0), tangent=False)
     expected = loads(d, R @ stress(material, R.T @ F), F)
     inner = inner_nodes(d.mesh)
     error = np.abs(assembly.residual[inner] - expected[inner]).max() / np.abs(assembly.residual).max()
@@ -132,7 +132,7 @@ def check_equilibrium(d, seed):
 
     U[2, 2] = brentq(normal_stress, 0.3, 3.0, xtol=1e-15)
     Q = Rotation.random(rng=rng).as_matrix()
-    assembly = d.assemble(homogeneous(d, Q @ U, Q), 1.0, tangent=False)
+    assembly = d.assemble(homogeneous(d, Q @ U, Q), d.model.loading(1.0), tangent=False)
     error = np.abs(assembly.residual[inner_nodes(d.mesh)]).max() / np.abs(assembly.residual).max()
     assert error < 1e-10, f"{error:.1e} of the boundary's forces"
 
@@ -142,7 +142,7 @@ def check_equilibrium(d, seed):
 
 def solve_inside(d, exact, force):
     """Values (nodes, 10) with those of the boundary given and the loads `force` inside."""
-    K = dense(d, d.assemble(d.undeformed(), 0.0).matrix)
+    K = dense(d, d.assemble(d.undeformed(), d.model.loading(0.0)).matrix)
     inside = np.zeros(d.free.shape, dtype=bool)
     inside[inner_nodes(d.mesh)] = True
     f, c = (np.flatnonzero(which) for which in (d.free & inside, d.free & ~inside))

@@ -61,7 +61,7 @@ def contents(state: State) -> bytes:
 def last_correction(path: Path) -> float:
     """Largest change of u by one more Newton iteration, m: the error of the last state, to first order."""
     discretisation, step = path.discretisation, path.steps[-1]
-    assembly = discretisation.assemble(step.state, step.load_factor)
+    assembly = discretisation.assemble(step.state, discretisation.model.loading(step.load_factor))
     assert assembly.matrix is not None
     solver = make_solver("superlu")
     solver.factorise(assembly.matrix)
@@ -80,9 +80,9 @@ def central_difference(discretisation: Discretisation, state: State, increment: 
     """
 
     def right_side(sign: float) -> np.ndarray:
-        discretisation.assemble(state, 1.0)
+        discretisation.assemble(state, discretisation.model.loading(1.0))
         moved = state.moved(sign * increment, discretisation.recover(sign * increment))
-        return discretisation.assemble(moved, 1.0).right_side
+        return discretisation.assemble(moved, discretisation.model.loading(1.0)).right_side
 
     return (right_side(-1.0) - right_side(1.0)) / (2 * step)
 

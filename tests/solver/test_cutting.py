@@ -66,7 +66,7 @@ def test_plain_tangent_reaches_the_same_states() -> None:
     sharp = 1e-11
     mixed, plain = (solve(model, Settings(tolerance=sharp, mixed_tangent=kind)) for kind in (True, False))
     assert mixed.solves < plain.solves, f"linear solves: mixed {mixed.solves}, plain {plain.solves}"
-    for factor in model.field.stop_factors:
+    for factor in model.course(0).stops():
         one, other = (next(step.state for step in path.steps if step.load_factor == factor) for path in (mixed, plain))
         for name in ("u", "w", "phi", "q"):
             ours, theirs = getattr(one, name), getattr(other, name)

@@ -113,7 +113,7 @@ def test_tangent_of_the_free_rotations_at_the_end(model: ms.Model) -> None:
     discretisation, state = path.discretisation, path.steps[-1].state
     tip, step = model.probe_nodes["tip"], 1e-6
 
-    matrix = discretisation.assemble(state, 1.0).matrix.toarray()
+    matrix = discretisation.assemble(state, discretisation.model.loading(1.0)).matrix.toarray()
     scale = np.sqrt(np.abs(matrix.diagonal()))
     equations = equation_numbers(discretisation)[tip]
     for component in (7, 9):

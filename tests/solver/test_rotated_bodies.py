@@ -32,14 +32,14 @@ def turned(model: ms.Model, Q: np.ndarray, supports: list[object]) -> ms.Model:
 
 def at_stops(path: Path) -> list[State]:
     """States at the stops and at the end."""
-    stops = path.model.field.stop_factors
+    stops = path.model.course(0).stops()
     return [step.state for step in path.steps if step.load_factor in stops]
 
 
 def largest_difference(path: Path, other: Path, Q: np.ndarray) -> tuple[float, str]:
     """Over all stops and fields: the other path turned back against this one, relative to the field's largest value."""
     worst = (0.0, "")
-    for factor, one, two in zip(path.model.field.stop_factors, at_stops(path), at_stops(other), strict=True):
+    for factor, one, two in zip(path.model.course(0).stops(), at_stops(path), at_stops(other), strict=True):
         pairs = {
             "u": (one.u, two.u @ Q),
             "w": (one.w, two.w @ Q),

@@ -15,6 +15,9 @@ from magshell.arrays import FloatArray
 from magshell.errors import InputError, suggest
 
 
+MOST_ITERATIONS, EIGENVALUE_TOLERANCE = 30, 1e-6
+
+
 class SingularMatrix(ArithmeticError):
     """The matrix has no inverse; `null_vector` (n,) is the direction in which it does nothing."""
 
@@ -27,9 +30,10 @@ class LinearSolver(Protocol):
     """A direct solver."""
 
     name: str
+    factorisations: int
 
     def factorise(self, matrix: sp.csc_array) -> None:
-        """Factorise a square matrix (equations in elimination order); the pattern never changes.
+        """Factorise a square matrix (equations in elimination order); the pattern never changes, and counts it.
 
         Raises
         ------
@@ -41,6 +45,12 @@ class LinearSolver(Protocol):
 
     def solve(self, right_side: FloatArray) -> FloatArray:
         """Solution of the factorised system."""
+
+    def negative_pivots(self) -> int | None:
+        """Pivots below zero of the last factorisation, each on the diagonal; None if the solver cannot tell."""
+
+    def smallest_eigenpair(self) -> tuple[float, FloatArray]:
+        """Eigenvalue of least magnitude of the scaled matrix, and its direction (n,) in the matrix's own unknowns."""
 
 
 def equilibration(matrix: sp.csc_array) -> FloatArray:
@@ -59,9 +69,33 @@ def equilibration(matrix: sp.csc_array) -> FloatArray:
 
 
 class _Equilibrated:
-    """Scaling shared by the solvers."""
+    """Scaling shared by the solvers, and what follows from solutions alone."""
+
+    factorisations = 0
+    _scale: FloatArray
+
+    def _solve_scaled(self, right_side: FloatArray) -> FloatArray:
+        raise NotImplementedError
+
+    def solve(self, right_side: FloatArray) -> FloatArray:
+        """See `LinearSolver`."""
+        return np.asarray(self._scale * self._solve_scaled(self._scale * right_side))
+
+    def smallest_eigenpair(self) -> tuple[float, FloatArray]:
+        """See `LinearSolver`. By inverse iteration, from a random vector that is always the same."""
+        vector = np.random.default_rng(0).normal(size=self._scale.size)
+        vector /= np.linalg.norm(vector)
+        inverse = 0.0
+        for _ in range(MOST_ITERATIONS):
+            solution = self._solve_scaled(vector)
+            last, inverse = inverse, float(vector @ solution)
+            vector = solution / np.linalg.norm(solution)
+            if abs(inverse - last) <= EIGENVALUE_TOLERANCE * abs(inverse):
+                break
+        return 1.0 / inverse, np.asarray(self._scale * vector)
 
     def _scaled(self, matrix: sp.csc_array) -> sp.csc_array:
+        self.factorisations += 1
         self._scale = equilibration(matrix)
         data = matrix.data * self._scale[matrix.indices]
         data *= np.repeat(self._scale, np.diff(matrix.indptr))
@@ -90,18 +124,17 @@ class SuperLU(_Equilibrated):
         except RuntimeError:
             shifted = self._matrix + 1e-10 * sp.eye_array(self._matrix.shape[0], format="csc")
             self._factors = splu(sp.csc_array(shifted), permc_spec="NATURAL", diag_pivot_thresh=1.0)
-            raise SingularMatrix(self._null_vector()) from None
+            raise SingularMatrix(self.smallest_eigenpair()[1]) from None
 
-    def solve(self, right_side: FloatArray) -> FloatArray:
-        """See `LinearSolver`."""
-        return np.asarray(self._scale * self._factors.solve(self._scale * right_side))
+    def negative_pivots(self) -> int | None:
+        """See `LinearSolver`. None where a row was exchanged, as signs then depend on the exchange."""
+        factors = self._factors
+        if not np.array_equal(factors.perm_r, factors.perm_c):
+            return None
+        return int(np.count_nonzero(factors.U.diagonal() < 0.0))
 
-    def _null_vector(self) -> FloatArray:
-        """By inverse iteration."""
-        vector = np.random.default_rng(0).normal(size=self._scale.size)
-        for _ in range(3):
-            vector = self._factors.solve(vector / np.linalg.norm(vector))
-        return np.asarray(self._scale * vector)
+    def _solve_scaled(self, right_side: FloatArray) -> FloatArray:
+        return np.asarray(self._factors.solve(right_side))
 
 
 class Pardiso(_Equilibrated):
@@ -132,12 +165,14 @@ class Pardiso(_Equilibrated):
         self._pardiso._call_pardiso(self._matrix, np.zeros((self._matrix.shape[0], 1)))
         self._analysed = True
 
-    def solve(self, right_side: FloatArray) -> FloatArray:
-        """See `LinearSolver`."""
+    def negative_pivots(self) -> int | None:
+        """See `LinearSolver`. PARDISO exchanges rows and does not say where."""
+        return None
+
+    def _solve_scaled(self, right_side: FloatArray) -> FloatArray:
         self._pardiso.set_iparm(12, 2)
         self._pardiso.set_phase(33)
-        scaled = np.ascontiguousarray((self._scale * right_side)[:, None])
-        return np.asarray(self._scale * self._pardiso._call_pardiso(self._matrix, scaled)[:, 0])
+        return np.asarray(self._pardiso._call_pardiso(self._matrix, np.ascontiguousarray(right_side[:, None]))[:, 0])
 
 
 SOLVERS: dict[str, type[SuperLU] | type[Pardiso]] = {"superlu": SuperLU, "pardiso": Pardiso}

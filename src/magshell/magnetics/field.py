@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -9,28 +10,40 @@ from numpy.typing import ArrayLike
 
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
+from magshell.history import numbers
 
 
 @dataclass(frozen=True, eq=False)
 class UniformField:
-    """External flux density, the same everywhere, growing in proportion to the load factor.
+    """External flux density, the same everywhere.
 
     Parameters
     ----------
     flux_density : array_like, shape (3,)
-        At load factor 1, T.
+        At multiplier 1, T.
     stops : sequence of float
-        Magnitudes of flux density, T, that the load path must hit; the end is always hit.
+        Magnitudes of flux density, T, that the load path must hit wherever the multiplier passes them.
+    history : sequence of float, optional
+        Multiplier at the end of each stage of the path; by default it grows to 1 in the first and stays.
+    rotation_axis : array_like, shape (3,), optional
+        Axis about which the field turns.
+    rotation : sequence of float, optional
+        Angle, rad, about the axis at the end of each stage.
 
     Raises
     ------
     InputError
-        Components that are not three finite numbers; stops outside the path or out of order.
+        Components that are not three finite numbers; stops outside the path or out of order; a rotation without an
+        axis, or the reverse.
     """
 
     flux_density: ArrayLike
     stops: ArrayLike = ()
+    history: Sequence[float] | None = None
+    rotation_axis: ArrayLike | None = None
+    rotation: Sequence[float] | None = None
     vector: FloatArray = field(init=False, repr=False)
+    axis: FloatArray = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         try:
@@ -40,24 +53,40 @@ class UniformField:
             raise InputError(f"field: flux_density and stops are numbers (T): {error}") from None
         if vector.shape != (3,) or not np.all(np.isfinite(vector)):
             raise InputError(f"field: flux_density is {self.flux_density!r}; it needs 3 finite components (T)")
-        magnitude = float(np.linalg.norm(vector))
+        largest = 1.0 if self.history is None else float(np.abs(numbers(self.history, "field")).max())
+        magnitude = largest * float(np.linalg.norm(vector))
         if not np.all(np.isfinite(stops)) or np.any(np.diff(stops) <= 0.0) or np.any(stops <= 0.0):
             raise InputError(f"field: stops are {stops.tolist()} T; they must be positive and increasing")
         if stops.size and stops[-1] > magnitude * (1.0 + 1e-12):
-            raise InputError(
-                f"field: the stop {stops[-1]:g} T is beyond the field's magnitude {magnitude:g} T at load factor 1"
-            )
+            raise InputError(f"field: the stop {stops[-1]:g} T is beyond the field's largest magnitude {magnitude:g} T")
         vector.flags.writeable = False
         object.__setattr__(self, "vector", vector)
         object.__setattr__(self, "stops", tuple(float(stop) for stop in stops))
+        object.__setattr__(self, "axis", self._unit_axis())
+
+    def _unit_axis(self) -> FloatArray:
+        if (self.rotation_axis is None) != (self.rotation is None):
+            raise InputError("field: rotation_axis and rotation go together; one of them is missing")
+        if self.rotation is None:
+            return np.zeros(3)
+        numbers(self.rotation, "field", "rotation")
+        try:
+            axis = np.array(self.rotation_axis, dtype=float)
+        except (TypeError, ValueError):
+            axis = np.empty(0)
+        if axis.shape != (3,) or not np.all(np.isfinite(axis)) or not np.any(axis):
+            raise InputError(
+                f"field: rotation_axis is {self.rotation_axis!r}; it needs 3 finite components, not all zero"
+            )
+        return axis / np.linalg.norm(axis)
 
     @property
     def magnitude(self) -> float:
-        """|B| at load factor 1, T."""
+        """|B| at multiplier 1, T."""
         return float(np.linalg.norm(self.vector))
 
-    @property
-    def stop_factors(self) -> list[float]:
-        """Load factors that the path must hit, the end included."""
-        inner = [stop / self.magnitude for stop in np.asarray(self.stops, dtype=float)]
-        return [factor for factor in inner if factor < 1.0 - 1e-12] + [1.0]
+    def turned(self, angle: float) -> FloatArray:
+        """Flux density (3,) at multiplier 1, turned by an angle (rad) about the axis."""
+        along = (self.vector @ self.axis) * self.axis
+        across = self.vector - along
+        return np.asarray(along + np.cos(angle) * across + np.sin(angle) * np.cross(self.axis, self.vector))

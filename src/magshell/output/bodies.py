@@ -108,10 +108,10 @@ def step_at(path: Path, flux_density: float) -> Step:
     ValueError
         The field is not a stop of the path.
     """
-    wanted = flux_density / path.model.field.magnitude
-    step = min(path.steps, key=lambda step: abs(step.load_factor - wanted))
-    if abs(step.load_factor - wanted) > 1e-9:
-        raise ValueError(f"{flux_density} T is not a stop; the nearest step is at load factor {step.load_factor}")
+    sizes = [float(np.linalg.norm(step.flux_density)) for step in path.steps]
+    step, size = min(zip(path.steps, sizes, strict=True), key=lambda pair: abs(pair[1] - flux_density))
+    if abs(size - flux_density) > 1e-9 * max(sizes):
+        raise ValueError(f"{flux_density} T is not a stop; the nearest step is at {size} T")
     return step
 
 

@@ -24,11 +24,12 @@ LINES = (("--", "s"), (":", "^"), ("-", "o"))
 
 
 def draw_curve(path: Path, file: str | os.PathLike[str] | None = "curve.png") -> Image | None:
-    """Draw displacement against field at every probe, with a mark at every converged step.
+    """Draw displacement against field at every probe, with a mark at every converged step, hollow if unstable.
 
-    The field is given in mT below, and above as the load 10³ |Bext| |Brem| / (mu mu0) of the literature,
-    with the largest |Brem| of the shell. Components below 1 % of the largest are left out. Without probes the
-    largest displacement anywhere is drawn; without a field the load factor takes its place.
+    The field is given in mT below, negative where it is reversed, and above as the load 10³ |Bext| |Brem| / (mu mu0)
+    of the literature, with the largest |Brem| of the shell. Components below 1 % of the largest are left out. Without
+    probes the largest displacement anywhere is drawn; where there is no field, or one that turns, the load factor
+    (plus the number of the stages before) takes its place.
 
     Parameters
     ----------
@@ -56,22 +57,34 @@ def curve_figure(path: Path) -> Figure:
     figure = Figure(figsize=(9.0, 5.6), dpi=DPI, facecolor="white")
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.12)
     axes = figure.subplots()
-    field = path.model.field.magnitude
-    load = np.array([step.load_factor for step in path.steps])
-    x = load if field == 0 else 1e3 * np.abs(load) * field
+    field, x = abscissa(path)
+    unstable = np.array([bool(step.negative_pivots) for step in path.steps])
     for label, values, style in sorted(_curves(path), key=lambda curve: -curve[1][-1]):
         axes.plot(x, 1e3 * values, label=label, markersize=5, markeredgecolor="white", markeredgewidth=0.6, **style)
+        hollow = {"linestyle": "none", "marker": style["marker"], "color": style["color"], "markersize": 5}
+        axes.plot(x[unstable], 1e3 * values[unstable], markerfacecolor="white", **hollow)
+    if unstable.any():
+        axes.plot([], [], "o", color="#6b7280", markerfacecolor="white", markersize=6, label="unstable")
     axes.axhline(0, color="#9aa3ad", linewidth=0.8, zorder=1)
-    axes.set_xlabel("load factor" if field == 0 else FIELD, **TEXT)
+    axes.set_xlabel(FIELD if field else "load factor", **TEXT)
     axes.set_ylabel("displacement (mm)", **TEXT)
     dress(axes)
-    scale = load_per_mT(path) if field > 0 else 0.0
+    scale = load_per_mT(path) if field else 0.0
     if scale > 0:
         second_axis(axes, scale, LOAD)
     else:
         axes.spines["top"].set_visible(False)
     figure.legend(loc="outside right center", frameon=False, fontsize=14, handlelength=2.6, labelspacing=0.7)
     return figure
+
+
+def abscissa(path: Path) -> tuple[bool, FloatArray]:
+    """Whether the field is what steps are drawn against, and it (mT, negative where reversed) or the load parameter."""
+    field = path.model.field
+    if field.magnitude == 0.0 or field.rotation is not None:
+        return False, np.array([step.stage + step.load_factor for step in path.steps])
+    along = field.vector / field.magnitude
+    return True, np.array([1e3 * float(step.flux_density @ along) for step in path.steps])
 
 
 def _curves(path: Path) -> list[tuple[str, FloatArray, dict[str, Any]]]:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import os
 import pathlib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
 
@@ -61,3 +63,10 @@ def append_line(path: pathlib.Path, line: str) -> None:
         except BaseException:
             file.truncate(before)
             raise
+
+
+def csv_line(values: Iterable[str]) -> str:
+    """A line of a CSV file."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerow(values)
+    return text.getvalue()

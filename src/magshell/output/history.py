@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import os
 import pathlib
-from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from magshell.output.files import append_line, write_atomically
+from magshell.output.files import append_line, csv_line, write_atomically
 from magshell.solver.events import Observer
 
 if TYPE_CHECKING:
@@ -17,12 +14,15 @@ if TYPE_CHECKING:
     from magshell.solver.path import Step
     from magshell.solver.settings import Settings
 
+ABOUT = ("stage", "arc_length", "negative_pivots")
+
 
 class HistoryWriter(Observer):
     """Write the field and the displacement of every probe at every converged step.
 
     Columns: `load_factor`, `B1,B2,B3` (T), then `NAME.u1,NAME.u2,NAME.u3` (m) per probe, in the order of
-    the model's probes. Numbers are written so that reading them gives the same double back.
+    the model's probes, then `stage` (from 1), `arc_length` and `negative_pivots` (0: stable; empty where the linear
+    solver cannot tell). Numbers are written so that reading them gives the same double back.
 
     Parameters
     ----------
@@ -42,18 +42,13 @@ class HistoryWriter(Observer):
         """Begin a new file with its heading."""
         self._model = discretisation.model
         probes = [f"{name}.u{i}" for name in self._model.probe_nodes for i in (1, 2, 3)]
-        write_atomically(self.file, _line(["load_factor", "B1", "B2", "B3", *probes]).encode())
+        write_atomically(self.file, csv_line(["load_factor", "B1", "B2", "B3", *probes, *ABOUT]).encode())
 
     def converged(self, step: Step) -> None:
         """Append one row."""
-        row = [step.load_factor]
-        row += [step.load_factor * b for b in self._model.field.vector]
+        row = [step.load_factor, *step.flux_density]
         for node in self._model.probe_nodes.values():
             row += step.state.u[node].tolist()
-        append_line(self.file, _line(repr(float(value)) for value in row))
-
-
-def _line(values: Iterable[str]) -> str:
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerow(values)
-    return text.getvalue()
+        pivots = "" if step.negative_pivots is None else str(step.negative_pivots)
+        numbers = (repr(float(value)) for value in row)
+        append_line(self.file, csv_line([*numbers, str(step.stage + 1), repr(float(step.arc_length)), pivots]))

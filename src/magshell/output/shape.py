@@ -67,7 +67,7 @@ def draw_shape(
     values = factor * _values(path, shown, output, component, tessellation)
     colours = ScalarMappable(*_colour_scale(values))
     rgb = colours.to_rgba(values, bytes=True)[:, :3]
-    field = shown.load_factor * path.model.field.vector
+    field = shown.flux_density
     pixels = (round(DPI * INCHES[0] * SCENE[2]), round(DPI * INCHES[1] * SCENE[3]))
     scene, camera, arrow = draw(mesh, tessellation, shown.state.u, rgb, field, pixels)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import pathlib
 from collections.abc import Iterable
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import quoteattr
 
@@ -28,7 +29,8 @@ class VtuWriter(Observer):
     Points are reference positions (m): in ParaView, *Warp By Vector* with `displacement` shows the deformed
     shape. Point and cell arrays are those of `magshell.output.registry`; their units and meaning are in the
     field data `outputs`, `units` and `meanings`, beside `load_factor`, `step`, `flux_density` and
-    `flux_density_magnitude` (T). The time in the PVD file is the load factor.
+    `flux_density_magnitude` (T). The time in the PVD file is the load factor plus the number of the stages before, or,
+    on a path that turns back, the number of the step.
 
     Parameters
     ----------
@@ -63,8 +65,8 @@ class VtuWriter(Observer):
     def converged(self, step: Step) -> None:
         """Write the step, then the series with it."""
         name = f"{self._folder}/step-{step.number:04d}.vtu"
-        write_atomically(self.file.parent / name, _vtu(grid(self._discretisation, step)))
-        self._written.append((step.load_factor, name))
+        write_atomically(self.file.parent / name, vtu(grid(self._discretisation, step)))
+        self._written.append((step.stage + step.load_factor, name))
         write_atomically(self.file, _pvd(self._written))
 
 
@@ -111,11 +113,12 @@ def grid(discretisation: Discretisation, step: Step) -> Any:
     for output in OUTPUTS.values():
         data = result.point_data if output.where == "point" else result.cell_data
         data.set_array(np.array(output.evaluate(discretisation, step.state)), output.name)
-    flux_density = step.load_factor * discretisation.model.field.vector
+    flux_density = step.flux_density
     result.field_data.update(
         {
             "load_factor": np.array([step.load_factor]),
             "step": np.array([step.number]),
+            "stage": np.array([step.stage + 1]),
             "flux_density": flux_density[np.newaxis],
             "flux_density_magnitude": np.array([np.linalg.norm(flux_density)]),
         }
@@ -139,7 +142,7 @@ def _add_texts(grid: Any, name: str, texts: Iterable[str]) -> None:
     grid.GetFieldData().AddArray(array)
 
 
-def _vtu(grid: Any) -> bytes:
+def vtu(grid: Any) -> bytes:
     """The file's content, compressed; made in memory because VTK only prints what a disk refuses."""
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
@@ -153,8 +156,12 @@ def _vtu(grid: Any) -> bytes:
 
 
 def _pvd(written: list[tuple[float, str]]) -> bytes:
+    times = [time for time, _ in written]
+    if any(later <= earlier for earlier, later in pairwise(times)):
+        times = [float(number) for number in range(len(times))]
     lines = [
-        f'    <DataSet timestep="{load_factor!r}" part="0" file={quoteattr(name)}/>' for load_factor, name in written
+        f'    <DataSet timestep="{time!r}" part="0" file={quoteattr(name)}/>'
+        for time, (_, name) in zip(times, written, strict=True)
     ]
     return "\n".join(
         [

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.output.curve import FIELD, LOAD, dress, load_per_mT, second_axis
+from magshell.output.curve import FIELD, LOAD, abscissa, dress, load_per_mT, second_axis
 from magshell.output.style import COLOURS, INK, TEXT
 from magshell.reproduction.numbers import length_of
 from magshell.reproduction.references import ASPECT_RATIOS, MEASURED, MEASURED_ON, QUOTED
@@ -56,7 +56,7 @@ def add_curve(axes: Axes, path: Path, values: FloatArray, **style: Any) -> None:
     """A smooth curve through the values at the converged steps, which are marked."""
     from scipy.interpolate import PchipInterpolator
 
-    load = load_per_mT(path) * 1e3 * path.model.field.magnitude * np.array([step.load_factor for step in path.steps])
+    load = load_per_mT(path) * abscissa(path)[1]
     fine = np.linspace(load[0], load[-1], SAMPLES)
     colour = style.pop("color")
     marker, label = style.pop("marker", "o"), style.pop("label")

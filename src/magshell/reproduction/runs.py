@@ -18,6 +18,7 @@ from magshell.assembly import Discretisation
 from magshell.errors import InputError, SolveError
 from magshell.linalg import nested_dissection
 from magshell.problem.building import build
+from magshell.solver.critical import CriticalPoint
 from magshell.solver.events import Iteration, Observer
 from magshell.solver.path import Path, Step
 from magshell.solver.stepping import solve
@@ -41,6 +42,7 @@ class _Solved(NamedTuple):
     """What a process sends back."""
 
     steps: list[Step]
+    critical_points: list[CriticalPoint]
     reason: str
     solver_name: str
     solves: int
@@ -107,8 +109,8 @@ def _outcome(name: str, future: Future[_Solved], problem: Any) -> Outcome:
         return Outcome(name, None, solved.reason)
     discretisation = Discretisation(problem.model, nested_dissection)
     path = Path(
-        problem.model, discretisation, problem.settings, solved.solver_name, solved.steps, True,
-        "load factor 1 reached", solved.solves, solved.cuts, solved.cpu_seconds,
+        problem.model, discretisation, problem.settings, solved.solver_name, solved.steps, [problem.model.course(0)],
+        solved.critical_points, True, "the end of the path is reached", solved.solves, solved.cuts, solved.cpu_seconds,
     )  # fmt: skip
     return Outcome(name, path)
 
@@ -173,5 +175,5 @@ def _run(name: str, file: ProblemFile) -> _Solved:
     except SolveError as error:
         path, reason = error.path, error.reason
     except KeyboardInterrupt:
-        return _Solved([], "interrupted", "", 0, 0, 0.0)
-    return _Solved(path.steps, reason, path.solver_name, path.solves, path.cuts, path.cpu_seconds)
+        return _Solved([], [], "interrupted", "", 0, 0, 0.0)
+    return _Solved(path.steps, path.critical_points, reason, path.solver_name, path.solves, path.cuts, path.cpu_seconds)

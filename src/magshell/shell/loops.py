@@ -66,9 +66,9 @@ class Body(NamedTuple):
 
 
 class Stresses(NamedTuple):
-    """Stresses of the geometric part at every point: P (e, p, k, 3, 3) in Pa and kappa (e, p, 2, 3) in rad."""
+    """Stresses of the geometric part at every point: S = U⁻¹ P (e, p, k, 3, 3) in Pa, kappa (e, p, 2, 3) in rad."""
 
-    P: FloatArray
+    S: FloatArray
     kappa: FloatArray
 
 
@@ -277,7 +277,7 @@ def assemble(
             for _ in range(ELIMINATION_STEPS):
                 J = section(
                     material, couple_modulus, coupling, B, geometry, body.remanence, e, p, x,
-                    stresses.P[e, p], stresses.kappa[e, p], mixed, tangent or body.plane_stress, w, g, g_mixed, H,
+                    stresses.S[e, p], stresses.kappa[e, p], mixed, tangent or body.plane_stress, w, g, g_mixed, H,
                 )  # fmt: skip
                 if not J > 0.0:
                     return e, J
@@ -398,4 +398,4 @@ def predict_stresses(
         for p in range(geometry.volume.shape[1]):
             point_values(shape, e, p, layout, v, x)
             point_values(shape, e, p, layout, dv, dx)
-            predicted_stress(material, geometry, e, p, x, dx, w, stresses.P[e, p], stresses.kappa[e, p])
+            predicted_stress(material, geometry, e, p, x, dx, w, stresses.S[e, p], stresses.kappa[e, p])

@@ -17,8 +17,9 @@ micro-rotation, δg_i - δω × g_i, so that per unit volume
           - 2 t^i · (δω × δg_i) + t^i · (δω × (δω × g_i))           geometric part
           + 4 z δφ t^3 · δd                                         g_3 is bilinear in φ and d.
 
-In the mixed tangent (Magisano, Leonetti and Garcea 2017) the geometric part uses stresses P', κ' predicted linearly by
-the last iteration in place of those of the state; the gradient stays exact.
+In the mixed tangent (Magisano, Leonetti and Garcea 2017) the geometric part uses stresses S', κ' predicted linearly by
+the last iteration in place of those of the state; the gradient stays exact. S = U⁻¹ P is the stress of which P = U S
+leaves, in δP = δU S + U δS, the part δU S that is geometric: it lies inside C, which therefore gets S' - S.
 """
 
 from __future__ import annotations
@@ -161,6 +162,30 @@ def _spin_to_quaternion(w: Workspace, q: FloatArray, n2: float, c: FloatArray, H
 
 
 @inline
+def _second_stress(w: Workspace, S: FloatArray) -> None:
+    """Fill S (3, 3) = U⁻¹ P."""
+    V, _ = inverse_transpose(w.U)
+    for j in range(3):
+        for l in range(3):
+            S[j, l] = V[0, j] * w.P[0, l] + V[1, j] * w.P[1, l] + V[2, j] * w.P[2, l]
+
+
+@inline
+def _mix(w: Workspace, S_mixed: FloatArray) -> None:
+    """Put S' in place of S in the geometric part of C, and P = U S'. (Symmetrised in C, as S is but for η.)"""
+    S = w.S
+    _second_stress(w, S)
+    for j in range(3):
+        for l in range(3):
+            difference = 0.5 * (S_mixed[j, l] - S[j, l] + S_mixed[l, j] - S[l, j])
+            for p in range(3):
+                w.C[p, j, p, l] += difference
+    for p in range(3):
+        for l in range(3):
+            w.P[p, l] = w.U[p, 0] * S_mixed[0, l] + w.U[p, 1] * S_mixed[1, l] + w.U[p, 2] * S_mixed[2, l]
+
+
+@inline
 def section(
     material: Material,
     couple_modulus: float,
@@ -171,7 +196,7 @@ def section(
     e: int,
     p: int,
     x: FloatArray,
-    P_mixed: FloatArray,
+    S_mixed: FloatArray,
     kappa_mixed: FloatArray,
     mixed: bool,
     tangent: bool,
@@ -224,7 +249,8 @@ def section(
                 couple[i] -= w.g[a, j] * w.t[a, l] - w.g[a, l] * w.t[a, j]
         if tangent:
             if mixed:
-                stress_vectors(w.R, P_mixed[k], G, volume, w.t_mixed)
+                _mix(w, S_mixed[k])
+                stress_vectors(w.R, w.P, G, volume, w.t_mixed)
             else:
                 for a in range(3):
                     for i in range(3):
@@ -274,10 +300,10 @@ def predicted_stress(
     x: FloatArray,
     dx: FloatArray,
     scratch: AnyArray,
-    P_mixed: FloatArray,
+    S_mixed: FloatArray,
     kappa_mixed: FloatArray,
 ) -> None:
-    """Fill P' = P + C : ΔU (levels, 3, 3) and κ' = κ + Δκ (2, 3), linear in the increment dx (31,) from x."""
+    """Fill S' = U⁻¹ (P + C : ΔU - ΔU S) (levels, 3, 3), κ' = κ + Δκ (2, 3), linear in the increment dx (31,) from x."""
     w = scratch[0]
     q, dq = x[Q : Q + 4], dx[Q : Q + 4]
     n2 = rotation_matrix(q, w.R)
@@ -285,7 +311,7 @@ def predicted_stress(
     ω = w.vectors[0]
     for i in range(3):
         ω[i] = 2.0 * (w.V[i, 0] * dq[0] + w.V[i, 1] * dq[1] + w.V[i, 2] * dq[2] + w.V[i, 3] * dq[3])
-    dU = w.K_m
+    dU, dP = w.K_m, w.K_ω
     for k in range(geometry.z.size):
         z, G = geometry.z[k], geometry.G[e, p, k]
         base_vectors(geometry, e, p, z, x, w.g)
@@ -301,13 +327,18 @@ def predicted_stress(
             w.t[a, 1] -= ω[2] * w.g[a, 0] - ω[0] * w.g[a, 2]
             w.t[a, 2] -= ω[0] * w.g[a, 1] - ω[1] * w.g[a, 0]
         stretch(w.R, w.t, G, dU)
+        _second_stress(w, w.S)
         for i in range(3):
             for j in range(3):
-                value = w.P[i, j]
+                value = -dU[i, 0] * w.S[0, j] - dU[i, 1] * w.S[1, j] - dU[i, 2] * w.S[2, j]
                 for l in range(3):
                     for r in range(3):
                         value += w.C[i, j, l, r] * dU[l, r]
-                P_mixed[k, i, j] = value
+                dP[i, j] = value
+        for i in range(3):
+            for j in range(3):
+                w.P[i, j] += dP[i, j]
+        _second_stress(w, S_mixed[k])
     for a in range(2):
         at = Q1 + 4 * a
         wryness_maps(q, x[at : at + 4], n2, w.L, w.M[a], w.kappa[a])

@@ -1,8 +1,9 @@
-"""Solution: Newton's method, load stepping, the resulting path."""
+"""Solution: Newton's method, path following, the resulting path."""
 
+from magshell.solver.critical import CriticalPoint
 from magshell.solver.events import Iteration, Observer
 from magshell.solver.path import Path, Probe, Step
 from magshell.solver.settings import Settings
 from magshell.solver.stepping import solve
 
-__all__ = ["Iteration", "Observer", "Path", "Probe", "Settings", "Step", "solve"]
+__all__ = ["CriticalPoint", "Iteration", "Observer", "Path", "Probe", "Settings", "Step", "solve"]

@@ -13,6 +13,7 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.assembly import Discretisation
+from magshell.loading import Loading
 from magshell.magnetics import law
 from magshell.shell.evaluation import evaluate
 from magshell.shell.state import State
@@ -47,7 +48,7 @@ class Balance(NamedTuple):
     moment_imbalance: float
 
 
-def magnetic_torque(discretisation: Discretisation, state: State, load_factor: float) -> tuple[FloatArray, float]:
+def magnetic_torque(discretisation: Discretisation, state: State, flux_density: FloatArray) -> tuple[FloatArray, float]:
     """Total torque of the field (3,), N m, and the integral of its magnitude.
 
     Per unit volume the law's forces f on m = F B̃ and c on the spin do the work -(f · δm + c · δω) in a rigid rotation:
@@ -60,35 +61,35 @@ def magnetic_torque(discretisation: Discretisation, state: State, load_factor: f
     n = np.broadcast_to(np.einsum("epxy,epy->xep", fields.R, body.remanence)[..., None], m.shape)
     f, c = np.zeros(m.shape), np.zeros(m.shape)
     unused = np.zeros((3, *m.shape)), np.zeros((3, *m.shape))
-    law.forces_and_tangent(model.coupling, m, n, load_factor * model.field.vector, f, c, *unused)
+    law.forces_and_tangent(model.coupling, m, n, flux_density, f, c, *unused)
     torque = -(np.cross(m, f, axis=0) + c) * volume
     return torque.sum(axis=(1, 2, 3)), float(np.linalg.norm(torque, axis=0).sum())
 
 
-def balance(discretisation: Discretisation, state: State, load_factor: float, residual: FloatArray) -> Balance:
+def balance(discretisation: Discretisation, state: State, loading: Loading, residual: FloatArray) -> Balance:
     """Reactions, loads and torque of a converged state.
 
     Parameters
     ----------
     discretisation : Discretisation
     state : State
-    load_factor : float
+    loading : Loading
     residual : ndarray, shape (nodes, 10)
         Of that state, in the nodes' frames: at held components what the supports exert.
     """
     constraints = discretisation.model.constraints
     held = np.where(constraints.fixed & discretisation.carried, residual, 0.0)
     reaction = discretisation.to_global(held)
-    load = load_factor * discretisation.model.nodal_loads
+    load = discretisation.external.forces(state, loading.loads)
     position = discretisation.mesh.points + state.u
     director = discretisation.normals + state.w
     moments = np.cross(position, reaction[:, :3]) + np.cross(director, reaction[:, 3:6]) + reaction[:, 7:]
-    load_moments = np.cross(position, load[:, :3]) + load[:, 7:]
-    torque, torque_scale = magnetic_torque(discretisation, state, load_factor)
+    load_moments = np.cross(position, load[:, :3]) + np.cross(director, load[:, 3:6]) + load[:, 7:]
+    torque, torque_scale = magnetic_torque(discretisation, state, loading.flux_density)
     force_sum, load_sum = reaction[:, :3].sum(axis=0), load[:, :3].sum(axis=0)
     moment_sum, load_moment_sum = moments.sum(axis=0), load_moments.sum(axis=0)
     force_scale = _sum_of_magnitudes(reaction[:, :3]) + _sum_of_magnitudes(load[:, :3])
-    force_scale += _sum_of_magnitudes(load[:, 7:]) / discretisation.mesh.size
+    force_scale += _sum_of_magnitudes(load[:, 3:6] + load[:, 7:]) / discretisation.mesh.size
     moment_scale = _sum_of_magnitudes(moments) + _sum_of_magnitudes(load_moments) + torque_scale
     return Balance(
         force_sum,

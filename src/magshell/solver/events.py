@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from magshell.assembly import Discretisation
+    from magshell.solver.critical import CriticalPoint
     from magshell.solver.path import Path, Step
     from magshell.solver.settings import Settings
 
@@ -18,6 +19,7 @@ class Iteration:
     Attributes
     ----------
     step : int
+    stage : int
     load_factor : float
     iteration : int
         Linear solves so far in this step.
@@ -30,6 +32,7 @@ class Iteration:
     """
 
     step: int
+    stage: int
     load_factor: float
     iteration: int
     residual: float
@@ -48,6 +51,9 @@ class Observer:
 
     def converged(self, step: Step) -> None:
         """After each converged step, the undeformed one included."""
+
+    def critical(self, point: CriticalPoint) -> None:
+        """After a critical point was located, which is after the step beyond it has converged."""
 
     def cut(self, load_factor: float, reason: str) -> None:
         """A step to this load factor failed and will be tried with a smaller increment."""

@@ -16,9 +16,10 @@ import numpy as np
 from magshell.arrays import FloatArray
 from magshell.assembly import Assembly, Discretisation, InvertedElement
 from magshell.linalg import LinearSolver, SingularMatrix
+from magshell.loading import Course
 from magshell.shell.loops import Stresses
 from magshell.shell.state import State
-from magshell.solver.arc import Cylinder, NoRoot
+from magshell.solver.constraints import Constraint, NoRoot
 from magshell.solver.settings import Settings
 
 HALVINGS = 4
@@ -30,43 +31,80 @@ class StepFailure(ArithmeticError):
     """The iteration did not converge; the message says why."""
 
 
-class Solution(NamedTuple):
-    """A converged state: its assembly, linear solves spent, history of worst relative residuals."""
-
-    state: State
-    load_factor: float
-    assembly: Assembly
-    solves: int
-    residuals: list[float]
-
-
 class Trial(NamedTuple):
-    """Where an iteration is: state, load factor, stresses of the geometric part, increments still to be imposed."""
+    """Where an iteration is: state, load factor, stresses of the geometric part."""
 
     state: State
     load_factor: float
     stresses: Stresses
-    imposed: FloatArray | None
+
+
+class Solution(NamedTuple):
+    """A converged trial.
+
+    Attributes
+    ----------
+    trial : Trial
+    assembly : Assembly
+    residuals : list of float
+        The worst relative one before each iteration and at the end.
+    increment : ndarray or None, shape (nodes, 10)
+        The last one: this far from the state is that of the tangent which is factorised. None: none is.
+    """
+
+    trial: Trial
+    assembly: Assembly
+    residuals: list[float]
+    increment: FloatArray | None
+
+    @property
+    def solves(self) -> int:
+        """Linear solves spent."""
+        return len(self.residuals) - 1
+
+
+class System(NamedTuple):
+    """The equations of a stage, and what solves them."""
+
+    discretisation: Discretisation
+    linear_solver: LinearSolver
+    course: Course
+    settings: Settings
+
+    def assemble(self, trial: Trial) -> Assembly:
+        """Residual and tangent."""
+        return self.discretisation.assemble(
+            trial.state, self.course.at(trial.load_factor), trial.stresses if self.settings.mixed_tangent else None
+        )
+
+    def per_load(self, trial: Trial, assembly: Assembly) -> FloatArray:
+        """Increment (nodes, 10) per load factor, by the tangent of the assembly, which is factorised."""
+        discretisation, rate = self.discretisation, self.course.rate(trial.load_factor)
+        stresses = trial.stresses if self.settings.mixed_tangent else None
+        direction = discretisation.load_direction(
+            trial.state, self.course.at(trial.load_factor), rate, stresses, assembly
+        )
+        return discretisation.expand(self.linear_solver.solve(direction), discretisation.imposed(rate.held))
 
 
 def newton(
-    discretisation: Discretisation,
-    linear_solver: LinearSolver,
+    system: System,
     trial: Trial,
-    cylinder: Cylinder | None,
-    settings: Settings,
+    constraint: Constraint | None,
     report: Callable[[int, str, float], None],
 ) -> Solution:
-    """Solve for equilibrium at the trial's load factor or, with a cylinder, on it at a load factor that is found.
+    """Solve for equilibrium at the trial's load factor or, with a constraint, at one that is found.
 
     Raises
     ------
     StepFailure
         No convergence, an inverted element, a singular tangent.
     """
+    discretisation, settings = system.discretisation, system.settings
     residuals: list[float] = []
+    increment: FloatArray | None = None
     try:
-        assembly = _assemble(discretisation, trial, settings)
+        assembly = system.assemble(trial)
     except InvertedElement as inverted:
         raise StepFailure(_inverted(inverted)) from None
     while True:
@@ -75,30 +113,23 @@ def newton(
         report(len(residuals) - 1, kind, residual)
         if not np.isfinite(residual):
             raise StepFailure("the residual is not finite")
-        if residual <= settings.tolerance and trial.imposed is None:
-            return Solution(trial.state, trial.load_factor, assembly, len(residuals) - 1, residuals)
+        if residual <= settings.tolerance:
+            return Solution(trial, assembly, residuals, increment)
         if len(residuals) > settings.max_iterations:
             raise StepFailure(
                 f"no convergence in {settings.max_iterations} iterations (residual of {kind}: {residual:.1e})"
             )
         if len(residuals) > 6 and residual > 1e3 * min(residuals):
             raise StepFailure(f"the iteration diverges (residual of {kind}: {residual:.1e})")
-        assert assembly.matrix is not None
-        try:
-            linear_solver.factorise(assembly.matrix)
-        except SingularMatrix as singular:
-            direction = discretisation.expand(singular.null_vector)
-            raise StepFailure(_free_direction(discretisation, direction)) from None
-        increment = discretisation.expand(linear_solver.solve(assembly.right_side), trial.imposed)
+        factorise(system, assembly)
+        increment = discretisation.expand(system.linear_solver.solve(assembly.right_side))
         d_load = 0.0
-        if cylinder is not None:
-            stresses = _geometric(trial, settings)
-            direction = discretisation.load_direction(trial.state, trial.load_factor, stresses, assembly.residual)
-            per_load = discretisation.expand(linear_solver.solve(direction), discretisation.imposed(1.0))
+        if constraint is not None:
+            per_load = system.per_load(trial, assembly)
             try:
-                d_load = cylinder.d_load(trial.state, increment, per_load)
-            except NoRoot:
-                raise StepFailure("the increment misses the arc length") from None
+                d_load = constraint.d_load(trial.state, trial.load_factor, increment, per_load)
+            except NoRoot as miss:
+                raise StepFailure(str(miss)) from None
             increment = increment + d_load * per_load
         if _size(discretisation, increment).max() > ABSURD:
             raise StepFailure(_free_direction(discretisation, increment))
@@ -110,23 +141,29 @@ def newton(
                 start.state.moved(size * increment, size * d_alpha),
                 start.load_factor + size * d_load,
                 discretisation.predicted_stresses(start.state, size * increment, size * d_alpha),
-                None if start.imposed is None or halving == 0 else (1.0 - size) * start.imposed,
             )
             try:
-                assembly = _assemble(discretisation, trial, settings)
+                assembly = system.assemble(trial)
                 break
             except InvertedElement as inverted:
                 if halving == HALVINGS:
                     raise StepFailure(_inverted(inverted)) from None
 
 
-def _assemble(discretisation: Discretisation, trial: Trial, settings: Settings) -> Assembly:
-    return discretisation.assemble(trial.state, trial.load_factor, _geometric(trial, settings), trial.imposed)
+def factorise(system: System, assembly: Assembly) -> None:
+    """Factorise the tangent.
 
-
-def _geometric(trial: Trial, settings: Settings) -> Stresses | None:
-    """Stresses of the geometric part; None: the state's own."""
-    return trial.stresses if settings.mixed_tangent else None
+    Raises
+    ------
+    StepFailure
+        It is singular; the message says in which direction.
+    """
+    assert assembly.matrix is not None
+    try:
+        system.linear_solver.factorise(assembly.matrix)
+    except SingularMatrix as singular:
+        direction = system.discretisation.expand(singular.null_vector)
+        raise StepFailure(_free_direction(system.discretisation, direction)) from None
 
 
 def _inverted(inverted: InvertedElement) -> str:

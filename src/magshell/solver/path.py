@@ -11,9 +11,11 @@ import numpy as np
 from magshell.arrays import FloatArray
 from magshell.assembly import Discretisation
 from magshell.errors import InputError, suggest
+from magshell.loading import Course, Loading
 from magshell.model import Model
 from magshell.shell.state import State
 from magshell.solver.balance import Balance
+from magshell.solver.critical import CriticalPoint
 from magshell.solver.settings import Settings
 
 
@@ -33,7 +35,16 @@ class Step(NamedTuple):
     balance : Balance or None
         Global equilibrium; None for the undeformed state.
     arc_length : float
-        Length of the path up to here, in displacements over the body's size (`magshell.solver.arc`).
+        Length of the path up to here (`magshell.solver.constraints`).
+    stage : int
+        From 0.
+    flux_density : ndarray, shape (3,)
+        T.
+    loads : ndarray, shape (loads,)
+        Multipliers of the model's loads.
+    negative_pivots : int or None
+        Of the tangent: 0 for a stable state (`magshell.solver.critical` says of which shells); None where the linear
+        solver cannot tell.
     """
 
     number: int
@@ -43,6 +54,10 @@ class Step(NamedTuple):
     residual: float
     balance: Balance | None
     arc_length: float
+    stage: int
+    flux_density: FloatArray
+    loads: FloatArray
+    negative_pivots: int | None
 
 
 class Probe(NamedTuple):
@@ -81,8 +96,12 @@ class Path:
         Linear solver in use.
     steps : list of Step
         The undeformed state first.
+    courses : list of Course
+        The loading of each stage that was begun.
+    critical_points : list of CriticalPoint
+        Limit points and bifurcations passed.
     converged : bool
-        Whether load factor 1 was reached.
+        Whether the end of the last stage was reached.
     reason : str
         Why the path ends where it does.
     solves, cuts : int
@@ -95,6 +114,8 @@ class Path:
     settings: Settings
     solver_name: str
     steps: list[Step] = field(default_factory=list)
+    courses: list[Course] = field(default_factory=list)
+    critical_points: list[CriticalPoint] = field(default_factory=list)
     converged: bool = False
     reason: str = "not finished"
     solves: int = 0
@@ -111,8 +132,12 @@ class Path:
         """
         node = self._node(name)
         factors = np.array([step.load_factor for step in self.steps])
-        flux_density = factors[:, None] * self.model.field.vector
+        flux_density = np.array([step.flux_density for step in self.steps])
         return Probe(factors, flux_density, np.array([step.state.u[node] for step in self.steps]))
+
+    def loading(self, step: Step) -> Loading:
+        """What acts on the shell at a step."""
+        return self.courses[step.stage].at(step.load_factor)
 
     def _node(self, name: str) -> int:
         if name in self.model.probe_nodes:

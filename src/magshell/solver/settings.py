@@ -16,11 +16,13 @@ class Settings:
     tolerance : float
         Largest residual of each kind of unknown (u, w, φ, ω, α) over the elements' forces of that kind.
     max_iterations : int
-        Linear solves after which a step is cut.
+        Linear solves after which a step is cut. (Few: a step that needs more has lost the path, or jumps to another.)
     target_iterations : int
         Linear solves per step that the step size aims at.
-    first_step, smallest_step, largest_step : float
-        Increments of the load factor.
+    first_step, largest_step : float
+        Increments of the load factor: of a stage's first step, and of any.
+    smallest_step : float
+        Length of a step, displacements over the body's size, below which the solve gives up.
     mixed_tangent : bool
         Mixed-integration-point Newton (few, large steps); False: the plain one.
     linear_solver : {"superlu", "pardiso"}
@@ -28,9 +30,9 @@ class Settings:
     """
 
     tolerance: float = 1e-9
-    max_iterations: int = 12
+    max_iterations: int = 8
     target_iterations: int = 5
-    first_step: float = 0.006
+    first_step: float = 0.01
     smallest_step: float = 1e-6
     largest_step: float = 1.0
     mixed_tangent: bool = True

@@ -1,4 +1,4 @@
-"""Load stepping: from the undeformed state to load factor 1, hitting every stop on the way."""
+"""Following the path: stage by stage, step by step, from the undeformed state to the end of the last stage."""
 
 from __future__ import annotations
 
@@ -10,23 +10,34 @@ import numpy as np
 
 from magshell.assembly import Discretisation
 from magshell.errors import SolveError
-from magshell.linalg import LinearSolver, make_solver, nested_dissection
+from magshell.linalg import make_solver, nested_dissection
+from magshell.loading import Amounts
 from magshell.model import Model
-from magshell.solver.arc import Cylinder, distance
-from magshell.solver.balance import balance
+from magshell.arrays import FloatArray
+from magshell.shell.state import State
+from magshell.solver.balance import Balance, balance
+from magshell.solver.constraints import Constraint, Metric, Sphere
+from magshell.solver.critical import CriticalPoint, locate, passed
 from magshell.solver.events import Iteration, Observer
-from magshell.solver.newton import Solution, StepFailure, Trial, newton
+from magshell.solver.goals import Goal, LoadGoal, ProbeGoal, goals_of
+from magshell.solver.newton import Solution, StepFailure, System, Trial, newton
 from magshell.solver.path import Path, Step
-from magshell.solver.prediction import along, at_stop, predicted
 from magshell.solver.settings import Settings
+from magshell.solver.track import Direction, Point, Slope, arc, crossing, point_at, trial_at
 
 logger = logging.getLogger(__name__)
 
 GROWTH, CUT = 2.5, 0.35
-# Cuts in a row after which the load factor becomes an unknown, and steps that it may take to reach the next stop.
-PATIENCE, WANDERING = 4, 400
-# Largest angle between two steps by arc length: beyond it the path has been left, or run back.
+# Failures in a row after which the arc length is held instead.
+PATIENCE = 2
+# Steps that a path may take by arc length to its next goal.
+WANDERING = 400
+# Largest angle between a step and the direction of the path at either end: beyond it the path has been left.
 SHARPEST = np.pi / 3
+# A step whose load grows by less than this share of what the slopes at both its ends say has jumped over a fold.
+JUMP = 0.5
+# First step along the mode of a branch, in sizes of the body.
+BRANCH_STEP = 0.01
 
 
 def solve(model: Model, settings: Settings | None = None, observers: Sequence[Observer] = ()) -> Path:
@@ -37,7 +48,7 @@ def solve(model: Model, settings: Settings | None = None, observers: Sequence[Ob
     model : Model
     settings : Settings, optional
     observers : sequence of Observer
-        Told of every iteration and step, for instance writers of files.
+        Told of every iteration, step and critical point, for instance writers of files.
 
     Returns
     -------
@@ -58,8 +69,9 @@ def solve(model: Model, settings: Settings | None = None, observers: Sequence[Ob
     try:
         for observer in observers:
             observer.started(discretisation, settings)
-        _Follower(path, linear_solver, observers).run()
-        path.converged, path.reason = True, "load factor 1 reached"
+        system = System(discretisation, linear_solver, model.course(0), settings)
+        _Follower(path, system, observers).run()
+        path.converged, path.reason = True, "the end of the path is reached"
     except StepFailure as failure:
         path.reason = str(failure)
         raise SolveError(path.reason, path) from None
@@ -74,94 +86,197 @@ def solve(model: Model, settings: Settings | None = None, observers: Sequence[Ob
 
 
 class _Follower:
-    """Steps until the last stop: under load control, or by arc length from where that fails until the next stop."""
+    """Steps from goal to goal.
 
-    def __init__(self, path: Path, linear_solver: LinearSolver, observers: Sequence[Observer]) -> None:
-        self.path, self.linear_solver, self.observers = path, linear_solver, observers
+    What drives a stage (the load factor, a displacement or the arc length) is held in each step. Where holding a load
+    factor or a displacement fails, the arc length is held instead until the next goal.
+    """
+
+    def __init__(self, path: Path, system: System, observers: Sequence[Observer]) -> None:
+        self.path, self.system, self.observers = path, system, observers
         self.settings, self.discretisation = path.settings, path.discretisation
-        self.size, self.radius = self.settings.first_step, 0.0
-        self.cuts_in_a_row, self.steps_by_arc = 0, 0
-        self.reason = ""
+        mesh = path.model.shell.mesh
+        self.metric = Metric(1.0 / (len(mesh.points) * mesh.size**2))
+        self.stage, self.track = 0, list[Point]()
+        self.radius, self.by_arc, self.reason = 0.0, False, ""
         self.begin = time.perf_counter()
 
     def run(self) -> None:
         """Follow the path; raises StepFailure with the reason."""
-        self._keep(Step(0, 0.0, self.discretisation.undeformed(), 0, 0.0, None, 0.0))
-        for stop in self.path.model.field.stop_factors:
-            while self.path.steps[-1].load_factor != stop:
-                if self.radius > 0.0:
-                    self._step_by_arc(stop)
-                else:
-                    self._step_by_load(stop)
+        model, state = self.path.model, self.discretisation.undeformed()
+        start: Amounts | None = None
+        for self.stage, stage in enumerate(model.stages):
+            arc_length, mode = (self.path.steps[-1].arc_length if self.path.steps else 0.0), None
+            if stage.branch is not None:
+                critical = self._critical(stage.branch)
+                state, arc_length, mode = critical.state, critical.arc_length, stage.side * critical.mode
+                start = self.path.courses[critical.stage].amounts(critical.load_factor)
+            course = model.course(self.stage, start)
+            self.path.courses.append(course)
+            self.system = self.system._replace(course=course)
+            goals = goals_of(model, course)
+            self._begin(state, arc_length, mode, goals[0])
+            for goal in goals:
+                self.by_arc = stage.control == "arc-length"
+                self._reach(goal)
+            state, start = self.track[-1].state, course.amounts(self.track[-1].load_factor)
 
-    def _step_by_load(self, stop: float) -> None:
-        last = self.path.steps[-1]
-        left = stop - last.load_factor
-        size = self.size
-        d_factor = left if size > 0.75 * left else min(size, 0.5 * left) if size > 0.5 * left else size
-        load_factor = stop if d_factor == left else last.load_factor + d_factor
-        if self._converges(predicted(self.path, load_factor), None):
-            self.cuts_in_a_row = 0
-            self.size = min(max(size, d_factor) * self._growth(), self.settings.largest_step)
-            return
-        self.size, self.cuts_in_a_row = CUT * d_factor, self.cuts_in_a_row + 1
-        too_small = self.size < self.settings.smallest_step
-        if len(self.path.steps) > 2 and (self.cuts_in_a_row == PATIENCE or too_small):
-            self.radius, self.steps_by_arc = 0.5 * (last.arc_length - self.path.steps[-2].arc_length), 0
-        elif too_small:
-            raise StepFailure(_give_up(self.path, load_factor, self.reason))
+    def _critical(self, number: int) -> CriticalPoint:
+        found = self.path.critical_points
+        if number > len(found):
+            raise StepFailure(
+                f"stage {self.stage + 1} wants to branch off at critical point {number}, but the path before it has "
+                f"{len(found) or 'none'}"
+            )
+        return found[number - 1]
 
-    def _step_by_arc(self, stop: float) -> None:
-        last = self.path.steps[-1]
-        trial = along(self.path, last.arc_length + self.radius)
-        if trial.load_factor >= stop:
-            if self._converges(at_stop(self.path, self.radius, stop), None):
-                self.radius, self.cuts_in_a_row = 0.0, 0
-                self.size = max(stop - last.load_factor, self.settings.smallest_step)
-                return
-            self.radius *= CUT
-        elif self._converges(trial, Cylinder(last.state.u, trial.state.u - last.state.u)):
-            self.radius *= self._growth()
+    def _begin(self, state: State, arc_length: float, mode: FloatArray | None, goal: Goal) -> None:
+        """The first point of a stage, and the size of its first step."""
+        trial = Trial(state, 0.0, self.discretisation.stresses_at(state))
+        solution = Solution(trial, self.system.assemble(trial), [0.0], None)
+        point = point_at(self.system, self.metric, solution, arc_length, (np.zeros_like(state.u), 1.0))
+        if mode is not None:
+            length = self.metric.norm(mode[:, :3], 0.0)
+            slope = Slope(mode / length, np.zeros_like(state.alpha), 0.0)
+            point, self.radius = point._replace(slope=slope), BRANCH_STEP
         else:
-            self.radius *= CUT
-        self.steps_by_arc += 1
-        if self.steps_by_arc > WANDERING:
-            self.reason = f"{WANDERING} steps by arc length do not lead to the next stop"
-        elif self.radius >= self.settings.smallest_step:
-            return
-        raise StepFailure(_give_up(self.path, trial.load_factor, self.reason))
+            self.radius = self.settings.first_step / point.slope.load
+            if isinstance(goal, ProbeGoal) and goal.slope(point.slope) * (goal.wanted - goal.value(point)) < 0.0:
+                point = point._replace(slope=point.slope.reversed)
+        self.track = [point]
+        if not self.path.steps:
+            self._keep(point, solution, None)
 
-    def _converges(self, trial: Trial, cylinder: Cylinder | None) -> bool:
-        """Whether the step converged, and is kept; otherwise the observers know why not."""
+    def _reach(self, goal: Goal) -> None:
+        """Steps until the goal is met."""
+        steps, failures = 0, 0
+        while True:
+            last, (trial, constraint, at_goal) = self.track[-1], self._next(goal)
+            distance = self.metric.norm(trial.state.u - last.state.u, trial.load_factor - last.load_factor)
+            point = self._solved(trial, constraint, goal, at_goal)
+            if point is not None:
+                self.radius = max(self.radius, distance) * self._growth()
+                failures, steps = 0, steps + 1
+                if at_goal:
+                    return
+                if self.by_arc and steps > WANDERING:
+                    self.reason = f"{WANDERING} steps by arc length do not lead to the next stop"
+                    break
+                continue
+            failures += 1
+            self.by_arc |= failures == PATIENCE
+            self.radius = CUT * distance
+            if self.radius < self.settings.smallest_step:
+                break
+        raise StepFailure(_give_up(self.path, self.stage, trial.load_factor, self.reason))
+
+    def _next(self, goal: Goal) -> tuple[Trial, Constraint | None, bool]:
+        """The next trial state, what is held in its step, and whether the step leads to the goal."""
+        track, longest = self.track, self._longest()
+        values = [goal.value(point) for point in track[-3:]]
+        at = crossing(track, values, goal.slope(track[-1].slope), goal.wanted, 2.0 * longest)
+        if at is not None and at <= 1.3 * longest:
+            wanted = goal.wanted if isinstance(goal, LoadGoal) else None
+            return self._trial(at, wanted), goal.hold_wanted(), True
+        trial = self._trial(longest if at is None else 0.5 * at)
+        nearer = (goal.value(trial) - values[-1]) * (goal.wanted - values[-1]) > 0.0
+        if nearer and not self.by_arc:
+            return trial, goal.hold(trial), False
+        chord: Direction = trial.state.u - track[-1].state.u, trial.load_factor - track[-1].load_factor
+        sphere = Sphere(
+            self.metric, track[-1].state.u, track[-1].load_factor, *chord, self.metric.norm(*chord)
+        )
+        return trial, sphere, False
+
+    def _trial(self, distance: float, load_factor: float | None = None) -> Trial:
+        return trial_at(self.discretisation, self.system.course, self.track, distance, load_factor)
+
+    def _longest(self) -> float:
+        """The radius, or less where the load factor would change by more than the largest step."""
+        track, largest = self.track, self.settings.largest_step
+        loads = [point.load_factor for point in track[-3:]]
+        limits = [
+            crossing(track, loads, track[-1].slope.load, loads[-1] + change, self.radius)
+            for change in (largest, -largest)
+        ]
+        return min((limit for limit in limits if limit is not None), default=self.radius)
+
+    def _solved(self, trial: Trial, constraint: Constraint | None, goal: Goal, at_goal: bool) -> Point | None:
+        """The point that a step leads to, which is then kept; None, and the observers know why, if it failed."""
+        last = self.track[-1]
         try:
             solution = newton(
-                self.discretisation, self.linear_solver, trial, cylinder, self.settings,
-                lambda iteration, kind, residual: self._report(trial, iteration, kind, residual),
-            )  # fmt: skip
-            if cylinder is not None and self._turns_back(solution):
-                raise StepFailure("the path turns back on itself")
+                self.system, trial, constraint, lambda *heard: self._report(trial, *heard)
+            )
+            found = solution.trial
+            chord: Direction = found.state.u - last.state.u, found.load_factor - last.load_factor
+            point = point_at(self.system, self.metric, solution, 0.0, chord)
+            length = arc(self.metric, chord, last.slope, point.slope)
+            point = point._replace(arc_length=last.arc_length + length)
+            self._check(point, chord, length)
+            if not at_goal and (goal.wanted - goal.value(last)) * (goal.wanted - goal.value(point)) <= 0.0:
+                raise StepFailure("the step goes beyond a stop")
         except StepFailure as failure:
             self.reason = str(failure)
             self.path.cuts += 1
             for observer in self.observers:
                 observer.cut(trial.load_factor, self.reason)
-            return False
-        last = self.path.steps[-1]
-        step = Step(
-            len(self.path.steps), solution.load_factor, solution.state, solution.solves, solution.residuals[-1],
-            balance(self.discretisation, solution.state, solution.load_factor, solution.assembly.residual),
-            last.arc_length + distance(last.state, solution.state, self.discretisation.mesh.size),
-        )  # fmt: skip
-        self._keep(step)
-        return True
+            return None
+        self.track.append(point)
+        self._keep(point, solution, self._balance(solution))
+        if passed(last, point):
+            self._locate(last, point)
+        return point
+
+    def _check(self, point: Point, chord: Direction, length: float) -> None:
+        """Whether a point lies on the path that was followed so far; raises StepFailure with what speaks against it."""
+        last, distance = self.track[-1], self.metric.norm(*chord)
+        sharpest = np.cos(SHARPEST) * distance
+        for slope in (last.slope, point.slope):
+            if self.metric.product(slope.direction, chord) < sharpest:
+                raise StepFailure("the step leaves the path, or turns back on it")
+        least = min(last.slope.load, point.slope.load)
+        if least > 0.0 and chord[1] < JUMP * least * length:
+            raise StepFailure("the step jumps over a part of the path where the load factor falls")
+
+    def _locate(self, before: Point, after: Point) -> None:
+        """Find and report the critical points between two steps."""
+        try:
+            for found in locate(self.system, self.metric, before, after, self._report):
+                point = found.point
+                course = self.system.course
+                critical = CriticalPoint(
+                    len(self.path.critical_points) + 1, found.kind, self.stage, point.load_factor,
+                    course.at(point.load_factor).flux_density, point.arc_length, point.state, found.mode,
+                    found.negative_pivots,
+                )  # fmt: skip
+                self.path.critical_points.append(critical)
+                for observer in self.observers:
+                    observer.critical(critical)
+        except StepFailure as failure:
+            for observer in self.observers:
+                observer.cut(after.load_factor, f"a critical point before it could not be located: {failure}")
+
+    def _balance(self, solution: Solution) -> Balance:
+        loading = self.system.course.at(solution.trial.load_factor)
+        return balance(self.discretisation, solution.trial.state, loading, solution.assembly.residual)
 
     def _report(self, trial: Trial, iteration: int, kind: str, residual: float) -> None:
-        self.path.solves += iteration > 0
+        self.path.solves = self.system.linear_solver.factorisations
         seconds = time.perf_counter() - self.begin
         for observer in self.observers:
-            observer.iterated(Iteration(len(self.path.steps), trial.load_factor, iteration, residual, kind, seconds))
+            observer.iterated(
+                Iteration(
+                    len(self.path.steps), self.stage, trial.load_factor, iteration, residual, kind, seconds
+                )
+            )
 
-    def _keep(self, step: Step) -> None:
+    def _keep(self, point: Point, solution: Solution, balanced: Balance | None) -> None:
+        loading = self.system.course.at(point.load_factor)
+        step = Step(
+            len(self.path.steps), point.load_factor, point.state, solution.solves, solution.residuals[-1], balanced,
+            point.arc_length, self.stage, loading.flux_density, loading.loads, point.negative_pivots,
+        )  # fmt: skip
         self.path.steps.append(step)
         for observer in self.observers:
             observer.converged(step)
@@ -170,19 +285,14 @@ class _Follower:
         """Factor of the step size after the solves that the last step took."""
         return float(np.clip(self.settings.target_iterations / max(self.path.steps[-1].iterations, 1), 0.4, GROWTH))
 
-    def _turns_back(self, solution: Solution) -> bool:
-        """Whether a solution lies more than `SHARPEST` off the direction of the last step."""
-        before, last = self.path.steps[-2].state, self.path.steps[-1].state
-        old, new = last.u - before.u, solution.state.u - last.u
-        return float(np.sum(old * new)) < np.cos(SHARPEST) * float(np.linalg.norm(old) * np.linalg.norm(new))
 
-
-def _give_up(path: Path, load_factor: float, reason: str) -> str:
-    magnitude = path.model.field.magnitude
-    last = path.steps[-1].load_factor
-    field = f" ({1e3 * last * magnitude:.4g} mT)" if magnitude > 0.0 else ""
+def _give_up(path: Path, stage: int, load_factor: float, reason: str) -> str:
+    last = path.steps[-1]
+    magnitude = float(np.linalg.norm(last.flux_density))
+    field = f" ({1e3 * magnitude:.4g} mT)" if magnitude > 0.0 else ""
+    where = f" of stage {stage + 1}" if len(path.model.stages) > 1 else ""
     return (
-        f"stopped at load factor {last:.6g}{field}: after {path.cuts} cut{'s' * (path.cuts != 1)} the step to "
-        f"{load_factor:.6g} still fails: {reason}. Likely causes: a limit point or buckling (the path turns back), "
-        "a mesh too coarse for the local bending, or a unit slip; `magshell check` shows the magnitudes"
+        f"stopped at load factor {last.load_factor:.6g}{where}{field}: after {path.cuts} cut{'s' * (path.cuts != 1)} "
+        f"the step to {load_factor:.6g} still fails: {reason}. Likely causes: a mesh too coarse for the local bending, "
+        "a path that bends too sharply, or a unit slip; `magshell check` shows the magnitudes"
     )

@@ -1,0 +1,150 @@
+r"""Critical points between two steps: limit points and bifurcations, found on the way and located.
+
+At both the tangent K is singular, K φ = 0 with the mode φ. At a limit point the load factor t turns: its derivative
+with respect to the arc length, which every point of the path has, changes sign. At a bifurcation it does not, and the
+number of negative pivots of K changes alone: another path crosses.
+
+For a symmetric tangent the number of negative pivots is that of its negative eigenvalues (Sylvester), so a conservative
+shell is stable where it is zero. Where loads or couples have no potential the tangent is not symmetric. Then the
+product of the pivots is still the determinant, so that an odd change is a singular tangent passed; and a shell that has
+lost its stability by divergence has an odd number. It may oscillate unstably (flutter) without any sign of it here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from magshell.arrays import FloatArray
+from magshell.shell.state import State
+from magshell.solver.constraints import Metric, Sphere
+from magshell.solver.newton import Solution, System, Trial, newton
+from magshell.solver.track import Point, point_at, trial_at
+
+LIMIT_POINT, BIFURCATION = "limit point", "bifurcation"
+# Of a step: accuracy of a critical point along it, and the distance kept from one in search of the next.
+ACCURACY, CLEARANCE = 1e-6, 1e-3
+
+Report = Callable[[Trial, int, str, float], None]
+
+
+class CriticalPoint(NamedTuple):
+    """A state whose tangent is singular.
+
+    Attributes
+    ----------
+    number : int
+        From 1, along the path.
+    kind : {"limit point", "bifurcation"}
+    stage : int
+    load_factor : float
+    flux_density : ndarray, shape (3,)
+        T.
+    arc_length : float
+    state : State
+    mode : ndarray, shape (nodes, 10)
+        The direction in which the tangent does nothing, global axes; its largest displacement is 1 m.
+    negative_pivots : tuple of int or None
+        Before and after it.
+    """
+
+    number: int
+    kind: str
+    stage: int
+    load_factor: float
+    flux_density: FloatArray
+    arc_length: float
+    state: State
+    mode: FloatArray
+    negative_pivots: tuple[int | None, int | None]
+
+
+class Found(NamedTuple):
+    """A located critical point, not yet numbered."""
+
+    kind: str
+    point: Point
+    mode: FloatArray
+    negative_pivots: tuple[int | None, int | None]
+
+
+def passed(before: Point, after: Point) -> bool:
+    """Whether a critical point lies between two points."""
+    counts = before.negative_pivots, after.negative_pivots
+    return before.slope.load * after.slope.load < 0.0 or (None not in counts and counts[0] != counts[1])
+
+
+def locate(system: System, metric: Metric, before: Point, after: Point, report: Report) -> Iterator[Found]:
+    """The critical points between two points, in the order of the path.
+
+    Raises
+    ------
+    StepFailure
+        A state between the two is not found.
+    """
+    search = _Search(system, metric, before, after, report)
+    if before.slope.load * after.slope.load >= 0.0:
+        yield from search.bifurcations(0.0, search.length)
+        return
+    turn = search.root(lambda point: point.slope.load, 0.0, search.length)
+    margin = CLEARANCE * search.length
+    yield from search.bifurcations(0.0, max(turn - margin, 0.0))
+    yield search.found(LIMIT_POINT, turn)
+    yield from search.bifurcations(min(turn + margin, search.length), search.length)
+
+
+class _Search:
+    """States between two points of the path, by their distance from the first."""
+
+    def __init__(self, system: System, metric: Metric, before: Point, after: Point, report: Report) -> None:
+        self.system, self.metric, self.report = system, metric, report
+        self.before, self.after = before, after
+        self.length = after.arc_length - before.arc_length
+
+    def point(self, distance: float) -> Point:
+        """The point of the path at a distance from the first; its tangent is left factorised."""
+        trial: Trial
+        if distance <= 0.0:
+            state = self.before.state
+            trial = Trial(state, self.before.load_factor, self.system.discretisation.stresses_at(state))
+            solution, along = Solution(trial, self.system.assemble(trial), [0.0], None), self.before.slope.direction
+        else:
+            trial = trial_at(self.system.discretisation, self.system.course, [self.after, self.before], distance)
+            chord = trial.state.u - self.before.state.u, trial.load_factor - self.before.load_factor
+            sphere = Sphere(
+                self.metric, self.before.state.u, self.before.load_factor, *chord, self.metric.norm(*chord)
+            )
+            solution = newton(self.system, trial, sphere, lambda *heard: self.report(trial, *heard))
+            along = chord
+        return point_at(self.system, self.metric, solution, self.before.arc_length + distance, along)
+
+    def root(self, function: Callable[[Point], float], low: float, high: float) -> float:
+        """Distance at which a function of the point changes its sign."""
+        from scipy.optimize import brentq
+
+        return float(brentq(lambda distance: function(self.point(distance)), low, high, xtol=ACCURACY * self.length))
+
+    def bifurcations(self, low: float, high: float) -> Iterator[Found]:
+        """Where the number of negative pivots changes between two distances."""
+        first, last = self.point(low).negative_pivots, self.point(high).negative_pivots
+        if first is None or last is None or first == last:
+            return
+
+        def least_eigenvalue(point: Point) -> float:
+            size = abs(self.system.linear_solver.smallest_eigenpair()[0])
+            return size if point.negative_pivots == first else -size
+
+        at = self.root(least_eigenvalue, low, high)
+        yield self.found(BIFURCATION, at)
+        yield from self.bifurcations(min(at + CLEARANCE * self.length, high), high)
+
+    def found(self, kind: str, distance: float) -> Found:
+        """The critical point at a distance, with its mode."""
+        margin = CLEARANCE * self.length
+        sides = self.point(distance - margin).negative_pivots, self.point(distance + margin).negative_pivots
+        point = self.point(distance)
+        mode = self.system.discretisation.expand(self.system.linear_solver.smallest_eigenpair()[1])
+        largest = float(np.linalg.norm(mode[:, :3], axis=1).max()) or 1.0
+        return Found(kind, point, mode / largest, sides)

@@ -1,0 +1,166 @@
+"""The path of a stage as a curve: its last points, their directions, and where it leads.
+
+The path is known at its last points and has a known direction at the last of them. Through these goes a polynomial in
+the arc length, cubic from the third point on. It gives trial states, and where a load factor or a displacement will be
+met. Unlike one in the load factor it also holds at limit points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+
+from magshell.arrays import FloatArray
+from magshell.assembly import Discretisation
+from magshell.loading import Course
+from magshell.shell.loops import Stresses
+from magshell.shell.state import State
+from magshell.solver.constraints import Metric
+from magshell.solver.newton import Solution, StepFailure, System, Trial, factorise
+
+# Part of a step by which the tangent of its end may be that of a state before.
+CLOSE = 1e-2
+
+Direction: TypeAlias = tuple[FloatArray, float]
+
+
+class Slope(NamedTuple):
+    """Derivative of the path with respect to its arc length: nodal increment (nodes, 10), Δα, load factor."""
+
+    increment: FloatArray
+    d_alpha: FloatArray
+    load: float
+
+    @property
+    def direction(self) -> Direction:
+        """Displacements (nodes, 3) and load factor."""
+        return self.increment[:, :3], self.load
+
+    @property
+    def reversed(self) -> Slope:
+        """The other way along the path."""
+        return Slope(-self.increment, -self.d_alpha, -self.load)
+
+
+class Point(NamedTuple):
+    """A converged state on the path.
+
+    Attributes
+    ----------
+    arc_length, load_factor : float
+    state : State
+    slope : Slope
+    stresses : Stresses
+        Of that state, for the geometric part of tangents nearby.
+    negative_pivots : int or None
+        Of the tangent; None where the linear solver cannot tell.
+    """
+
+    arc_length: float
+    load_factor: float
+    state: State
+    slope: Slope
+    stresses: Stresses
+    negative_pivots: int | None
+
+
+def _weights(track: Sequence[Point], distance: float) -> tuple[float, list[float]]:
+    """Of the last slope and of the differences of up to two earlier points from the last one.
+
+    P(τ) = τ P' + τ² g(τ), with g the polynomial through (P_k - τ_k P') / τ_k².
+    """
+    earlier = [point.arc_length - track[-1].arc_length for point in track[-3:-1]]
+    shares = [
+        (distance / at) ** 2 * float(np.prod([(distance - other) / (at - other) for other in earlier if other != at]))
+        for at in earlier
+    ]
+    return distance - sum(share * at for share, at in zip(shares, earlier, strict=True)), shares
+
+
+def trial_at(
+    discretisation: Discretisation,
+    course: Course,
+    track: Sequence[Point],
+    distance: float,
+    load_factor: float | None = None,
+) -> Trial:
+    """Trial state this far ahead of the last point; supports are put where its load factor, or the given one, wants."""
+    last = track[-1]
+    on_slope, shares = _weights(track, distance)
+    increment, d_alpha = on_slope * last.slope.increment, on_slope * last.slope.d_alpha
+    for share, point in zip(shares, track[-3:-1], strict=True):
+        to_point, alpha_to_point = point.state.increment_from(last.state)
+        increment, d_alpha = increment + share * to_point, d_alpha + share * alpha_to_point
+    if load_factor is None:
+        load_factor = value_at(track, [point.load_factor for point in track[-3:]], last.slope.load, distance)
+    held = course.amounts(load_factor).held - course.amounts(last.load_factor).held
+    increment = discretisation.with_imposed(increment, held)
+    return Trial(
+        last.state.moved(increment, d_alpha), load_factor, _stresses_ahead(discretisation, track, on_slope, shares)
+    )
+
+
+def _stresses_ahead(
+    discretisation: Discretisation, track: Sequence[Point], on_slope: float, shares: Sequence[float]
+) -> Stresses:
+    """By the same polynomial. (Those of the trial state itself have large membrane parts that the path has not.)"""
+    last = track[-1]
+    sloping = discretisation.predicted_stresses(last.state, last.slope.increment, last.slope.d_alpha)
+    points = [point.stresses for point in track[-3:-1]]
+    return Stresses(*(
+        own + on_slope * (slope - own) + sum(share * (other - own) for share, other in zip(shares, others, strict=True))
+        for own, slope, *others in zip(last.stresses, sloping, *points, strict=True)
+    ))
+
+
+def value_at(track: Sequence[Point], values: Sequence[float], slope: float, distance: float) -> float:
+    """A scalar this far ahead, from its values at the last (up to three) points and its slope at the last."""
+    on_slope, shares = _weights(track, distance)
+    change = sum(share * (value - values[-1]) for share, value in zip(shares, values[:-1], strict=True))
+    return values[-1] + on_slope * slope + change
+
+
+def crossing(
+    track: Sequence[Point], values: Sequence[float], slope: float, wanted: float, longest: float
+) -> float | None:
+    """Least distance ahead, within the longest, at which a scalar takes a value."""
+    distances = longest * np.array([0.25, 0.5, 0.75, 1.0])
+    ahead = [value_at(track, values, slope, distance) - values[-1] for distance in distances]
+    cubic = np.polyfit(distances / longest, np.array(ahead) / (distances / longest), 2)
+    roots = np.roots([*cubic, values[-1] - wanted])
+    inside = [root.real for root in roots if abs(root.imag) < 1e-9 and 0.0 < root.real <= 1.0]
+    return longest * min(inside) if inside else None
+
+
+def point_at(system: System, metric: Metric, solution: Solution, arc_length: float, along: Direction) -> Point:
+    """The point of a converged state, with the slope that goes along a direction.
+
+    The tangent of the last iteration serves where the last increment was small beside that direction.
+
+    Raises
+    ------
+    StepFailure
+        The tangent is singular, or nothing changes with the load factor.
+    """
+    trial, discretisation = solution.trial, system.discretisation
+    last = np.inf if solution.increment is None else metric.norm(solution.increment[:, :3], 0.0)
+    if last > CLOSE * metric.norm(*along):
+        factorise(system, solution.assembly)
+    negative = system.linear_solver.negative_pivots()
+    per_load = system.per_load(trial, solution.assembly)
+    d_alpha = discretisation.recover(per_load) - discretisation.recover(np.zeros_like(per_load))
+    length = metric.norm(per_load[:, :3], 1.0)
+    if not np.isfinite(length):
+        raise StepFailure("the tangent is singular at the converged state")
+    side = -1.0 if metric.product((per_load[:, :3], 1.0), along) < 0.0 else 1.0
+    slope = Slope(side / length * per_load, side / length * d_alpha, side / length)
+    return Point(arc_length, trial.load_factor, trial.state, slope, discretisation.stresses_at(trial.state), negative)
+
+
+def arc(metric: Metric, chord: Direction, first: Slope, second: Slope) -> float:
+    """Length of the arc over a chord, as that of a circle which turns by the angle between the slopes."""
+    cosine = np.clip(metric.product(first.direction, second.direction), -1.0, 1.0)
+    half = 0.5 * float(np.arccos(cosine))
+    return metric.norm(*chord) / float(np.sinc(half / np.pi))
