@@ -6,11 +6,10 @@ import sys
 import time
 
 import KratosMultiphysics as km
-import KratosMultiphysics.LinearSolversApplication as _
 import KratosMultiphysics.StructuralMechanicsApplication as sma
 import numpy as np
 from KratosMultiphysics import python_linear_solver_factory
-from peers_problems import PROBLEMS, TOLERANCE, Answer, Problem, fewest_steps
+from peers_problems import MOST_ITERATIONS, PROBLEMS, TOLERANCE, Answer, Problem, fewest_steps
 
 ELEMENTS = {
     "thick-4": "ShellThickElementCorotational3D4N",
@@ -18,17 +17,23 @@ ELEMENTS = {
     "thick-3": "ShellThickElementCorotational3D3N",
     "thin-3": "ShellThinElementCorotational3D3N",
 }
-MOST_ITERATIONS = 40
 DISPLACEMENT = (km.DISPLACEMENT_X, km.DISPLACEMENT_Y, km.DISPLACEMENT_Z)
 ROTATION = (km.ROTATION_X, km.ROTATION_Y, km.ROTATION_Z)
 
 
-def shell(problem: Problem, element: str) -> tuple[km.Model, km.ModelPart]:
+def shell(problem: Problem, element: str) -> km.Model:
     """Nodes, elements and section; triangles halve the quadrilaterals."""
     model = km.Model()
     part = model.CreateModelPart("shell", 2)
     part.ProcessInfo[km.DOMAIN_SIZE] = 3
-    for variable in (km.DISPLACEMENT, km.ROTATION, km.REACTION, km.REACTION_MOMENT, sma.POINT_LOAD, km.VOLUME_ACCELERATION):
+    for variable in (
+        km.DISPLACEMENT,
+        km.ROTATION,
+        km.REACTION,
+        km.REACTION_MOMENT,
+        sma.POINT_LOAD,
+        km.VOLUME_ACCELERATION,
+    ):
         part.AddNodalSolutionStepVariable(variable)
     section = part.CreateNewProperties(1)
     section[km.THICKNESS] = problem.thickness
@@ -47,7 +52,7 @@ def shell(problem: Problem, element: str) -> tuple[km.Model, km.ModelPart]:
     for names, kind in ((DISPLACEMENT, "REACTION"), (ROTATION, "REACTION_MOMENT")):
         for name, axis in zip(names, "XYZ", strict=True):
             km.VariableUtils().AddDof(name, getattr(km, f"{kind}_{axis}"), part)
-    return model, part
+    return model
 
 
 def hold_and_load(name: str, part: km.ModelPart, problem: Problem) -> dict[int, np.ndarray]:
@@ -94,7 +99,8 @@ def strategy(part: km.ModelPart) -> km.ResidualBasedNewtonRaphsonStrategy:
 def attempt(element: str, name: str, steps: int) -> Answer:
     """With equal load steps."""
     problem = PROBLEMS[name]
-    model, part = shell(problem, element)
+    model = shell(problem, element)
+    part = model["shell"]
     forces = hold_and_load(name, part, problem)
     for number, node in enumerate(forces):
         part.CreateNewCondition("PointLoadCondition3D1N", number + 1, [node], part.GetProperties()[1])
@@ -115,9 +121,7 @@ def attempt(element: str, name: str, steps: int) -> Answer:
             answer.reason = f"no convergence in {MOST_ITERATIONS} iterations of step {step} of {steps}"
             return answer
     answer.seconds = time.process_time() - start
-    answer.unknowns = sum(
-        not node.IsFixed(variable) for node in part.Nodes for variable in (*DISPLACEMENT, *ROTATION)
-    )
+    answer.unknowns = sum(not node.IsFixed(variable) for node in part.Nodes for variable in (*DISPLACEMENT, *ROTATION))
     if name == "annulus":
         edge = sorted(forces)
         ends = {"w_A": (edge[0], 2, 1.0), "w_B": (edge[-1], 2, 1.0)}
