@@ -62,6 +62,24 @@ def test_cantilever_bent_by_an_end_force(element: str) -> None:
     assert found == pytest.approx(1.0 + shear - lost, abs=2.0 * tolerance), f"{found - 1.0 - shear + lost:.2e}"
 
 
+@each_element
+def test_cantilever_bent_by_its_weight(element: str) -> None:
+    """Timoshenko's beam, u3 = q L⁴/8EI + q L²/2 mu A, with an error of the second order, and next to none beyond it."""
+    stiffness, area, density = 2.0 * MU * WIDTH * THICKNESS**3 / 12.0, WIDTH * THICKNESS, 1100.0
+    load = SMALL * 8.0 * stiffness / LENGTH**3
+    expected = SMALL * LENGTH + 0.5 * load * LENGTH**2 / (MU * area)
+    gravity = ms.Gravity((0, 0, load / (density * area)))
+    errors = []
+    for number in (5, 10):
+        mesh = ms.mesh.rectangle(LENGTH, WIDTH, (number, number // 5))
+        material = ms.MicropolarNeoHookean(MU, 0.0, 0.1 * MU, 1e-3 * THICKNESS)
+        shell = ms.Shell(mesh, THICKNESS, material, element=element, density=density)
+        model = ms.Model(shell, [ms.Clamp("left")], loads=[gravity], probes={"tip": (LENGTH, 0, 0)})
+        errors.append(solve(model, Settings(first_step=1.0)).probe("tip").u3[-1] / expected - 1.0)
+    assert abs(errors[1]) < 0.3 * abs(errors[0]), errors
+    assert abs(4.0 * errors[1] - errors[0]) / 3.0 < 0.5 * abs(errors[1]), errors
+
+
 @pytest.fixture(scope="module", params=["loads", "loads and field"])
 def bent(request: pytest.FixtureRequest) -> ms.Path:
     return solve(arm(mixed_loads(), field=0.0 if request.param == "loads" else 3e-3))

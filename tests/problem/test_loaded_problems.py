@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 import re
 from pathlib import Path
 
@@ -86,3 +87,11 @@ def test_history_without_a_field_holds_zeros(tmp_path: Path, capsys: pytest.Capt
     assert not np.any(values[:, 1:4])
     assert values[-1, 0] == 1.0
     assert values[-1, heading.index("tip.u3")] > 1e-3
+
+
+def test_a_file_with_every_load_is_solved(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "every.toml").write_text(EVERY_LOAD)
+    assert main(["run", str(tmp_path / "every.toml"), "--out", str(tmp_path / "out")]) == 0, capsys.readouterr().err
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert summary["converged"]
+    assert max(summary["force_imbalance"], summary["moment_imbalance"]) < 1e-8
