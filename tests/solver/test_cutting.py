@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import dropwhile
+import itertools
 
 import numpy as np
 import pytest
@@ -11,6 +11,8 @@ from hypothesis import strategies as some
 
 import magshell as ms
 from magshell import Path, Settings, solve
+from magshell.solver import stepping
+from magshell.solver.newton import StepFailure, newton
 from solver.models import LENGTH, Record, arm, contents, last_correction, strip
 
 
@@ -23,16 +25,30 @@ def same_end(one: Path, other: Path) -> tuple[float, float]:
     return float(distance), 2.0 * (last_correction(one) + last_correction(other)) + 1e-13 * LENGTH
 
 
-def test_cut_step_leaves_nothing_behind() -> None:
-    """The path after failed first steps is bit for bit that of a solve that starts with the step that succeeds."""
-    hasty, prudent = Record(), Record()
-    cut = solve(strip(), Settings(first_step=1.0), [hasty])
-    direct = solve(strip(), Settings(first_step=cut.steps[1].load_factor), [prudent])
-    assert hasty.cuts[0][0] == 1.0, f"the whole field in one step should be too much: {hasty.cuts}"
-    first = cut.steps[1].load_factor
-    assert prudent.cuts == list(dropwhile(lambda one: one[0] > first, hasty.cuts))
-    assert [step.load_factor for step in direct.steps] == [step.load_factor for step in cut.steps]
-    for ours, theirs in zip(cut.steps, direct.steps, strict=True):
+@pytest.mark.parametrize("failing", [1, 2, 4], ids="attempt {}".format)
+def test_cut_step_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatch, failing: int) -> None:
+    """A step that fails after its work is done, and one that fails before it: the same path to the last bit."""
+
+    def path(work_first: bool) -> Path:
+        attempts = itertools.count(1)
+
+        def failing_newton(system, trial, constraint, report):
+            fails = next(attempts) == failing
+            solution = newton(system, trial, constraint, report) if work_first or not fails else None
+            if fails:
+                raise StepFailure("meant to")
+            return solution
+
+        monkeypatch.setattr(stepping, "newton", failing_newton)
+        record = Record()
+        result = solve(strip(), observers=[record])
+        assert (record.cuts[0][1], len(record.steps[:failing])) == ("meant to", failing)
+        return result
+
+    late, early = path(work_first=True), path(work_first=False)
+    assert late.cuts == early.cuts
+    assert [step.load_factor for step in late.steps] == [step.load_factor for step in early.steps]
+    for ours, theirs in zip(late.steps, early.steps, strict=True):
         assert contents(ours.state) == contents(theirs.state), f"step {ours.number} differs"
 
 

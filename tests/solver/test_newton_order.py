@@ -20,7 +20,7 @@ from magshell.linalg import make_solver, nested_dissection
 from magshell.magnetics import laws
 from magshell.shell.elements import ELEMENTS
 from magshell.shell.state import State
-from magshell.solver.newton import Trial, newton
+from magshell.solver.newton import System, Trial, newton
 from solver.models import arm, central_difference, equation_numbers, strip
 
 BEGIN = 0.2
@@ -65,9 +65,10 @@ def errors(case: Case, mixed: bool, ε: float) -> np.ndarray:
     model, start = case.model, converged(case)
     discretisation = Recording(model, nested_dissection)
     discretisation.states = []
-    trial = Trial(start, BEGIN * (1 + ε), discretisation.stresses_at(start), None)
+    trial = Trial(start, BEGIN * (1 + ε), discretisation.stresses_at(start))
     settings = Settings(tolerance=SHARP, mixed_tangent=mixed, max_iterations=20)
-    newton(discretisation, make_solver("superlu"), trial, None, settings, lambda *_: None)
+    system = System(discretisation, make_solver("superlu"), model.course(0), settings)
+    newton(system, trial, None, lambda *_: None)
     *iterates, solution = discretisation.states
     return np.array([np.linalg.norm(state.u - solution.u) for state in iterates[:3]])
 
