@@ -37,6 +37,8 @@ KINDS = {
     fields.Pressure: "stress, not 0",
     fields.PositiveDensity: "density > 0",
     fields.History: "list of numbers",
+    fields.Rotation: "list of angles",
+    tuple[fields.PositiveNumber, ...]: "list of numbers in (0, 1], rising",
     fields.Number: "number",
     fields.PositiveNumber: "number > 0",
     fields.Count: "whole number ≥ 1",
@@ -188,8 +190,11 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
     "field": (
         schema.FieldTable,
         {
-            "flux_density": "At load factor 1.",
-            "stops": "Magnitudes that the path must hit; the end is always hit.",
+            "flux_density": "At multiplier 1 and angle 0.",
+            **HISTORY,
+            "rotation_axis": "About which the field turns.",
+            "rotation": "Angle by which it is turned at the end of each stage.",
+            "stops": "Magnitudes that the path must hit wherever it passes them; the end is always hit.",
             "coupling": "The law that couples field and shell, see the [theory page](theory.md#5-magnetic-coupling).",
         },
     ),
@@ -242,7 +247,23 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "field": "Displacement (length), director displacement (number), thickness stretch (1/length), "
             "rotation (angle).",
             "component": "Along $X_1$, $X_2$ or $X_3$; left out: all three.",
-            "value": "At load factor 1: one value, or three where all components are meant.",
+            "value": "One value, or three where all components are meant.",
+            **HISTORY,
+        },
+    ),
+    "stage": (
+        schema.StageTable,
+        {
+            "name": "For messages and files.",
+            "control": "What is given: the load factor, the length of the path from step to step, or the displacement "
+            "of a probe.",
+            "stops": "Load factors of the stage that the path must hit; 1 is always hit.",
+            "probe": "Name of a probe,",
+            "component": "the component of its displacement, and",
+            "target": "the value at which the stage ends: needed under displacement control; with arc length in place "
+            "of load factor 1.",
+            "branch": "Start at this critical point of the path so far (from 1), along its mode.",
+            "side": "Which way along the mode.",
         },
     ),
     "solver": (
@@ -251,9 +272,9 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "tolerance": "Largest residual of each kind of unknown over the elements' forces of that kind.",
             "max_iterations": "Linear solves after which a step is cut.",
             "target_iterations": "Linear solves per step that the step size aims at.",
-            "first_step": "First increment of the load factor.",
-            "smallest_step": "An increment below this ends the solve.",
-            "largest_step": "No increment exceeds this.",
+            "first_step": "First increment of the load factor in a stage.",
+            "smallest_step": "A step shorter than this, in displacements over the body's size, ends the solve.",
+            "largest_step": "No increment of the load factor exceeds this.",
             "linear_solver": "`superlu`, or `pardiso` where the extra is installed.",
         },
     ),
@@ -269,6 +290,7 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "field": "The external field.",
             "loads": "Mechanical loads.",
             "supports": "What holds the shell.",
+            "stages": "Parts of the load path, in sequence; left out: one, or as many as the longest history has.",
             "probes": "Nodes to follow: a name and the reference position.",
             "solver": "How the path is followed.",
         },
@@ -284,6 +306,7 @@ TOP = {
     "remanence": "list of tables",
     "loads": "list of tables",
     "supports": "list of tables, at least one",
+    "stages": "list of tables",
     "probes": "table of positions",
 }
 OTHERWISE = {
@@ -296,7 +319,10 @@ OTHERWISE = {
     ("blocks", "elements"): "each block its own",
     ("block", "elements"): "those of `mesh`",
     ("gravity", "group"): "the whole shell",
-    **{(kind, "history"): "`[1, 1, …]`" for kind in ("force", "moment", "traction", "pressure", "gravity")},
+    **{
+        (kind, "history"): "`[1, 1, …]`"
+        for kind in ("force", "moment", "traction", "pressure", "gravity", "field", "prescribe")
+    },
     ("constant", "vector"): "magnitude and direction",
     ("file", "field"): "none",
     ("file", "solver"): "see below",

@@ -133,7 +133,9 @@ def stiffness(mesh: Mesh, element: ElementType, length_scale: float = 0.1) -> np
         constraints=resolve(mesh, (), shell.carriers), applied=(),
     )  # fmt: skip
     discretisation = Discretisation(body, lambda graph: np.arange(graph.shape[0]))
-    matrix = discretisation.assemble(discretisation.undeformed(), Loading(np.zeros(3), np.zeros(0), np.zeros((len(mesh.points), 10)))).matrix
+    matrix = discretisation.assemble(
+        discretisation.undeformed(), Loading(np.zeros(3), np.zeros(0), np.zeros((len(mesh.points), 10)))
+    ).matrix
     return 0.5 * (matrix.toarray() + matrix.toarray().T)
 
 

@@ -154,7 +154,9 @@ class Discretisation:
         pairs = mesh.elements
         offset = (
             np.asarray(
-                self._row_offset[np.repeat(pairs, per_element, axis=1).ravel(), np.tile(pairs, (1, per_element)).ravel()]
+                self._row_offset[
+                    np.repeat(pairs, per_element, axis=1).ravel(), np.tile(pairs, (1, per_element)).ravel()
+                ]
             ).reshape(len(pairs), per_element, per_element)
             - 1
         )

@@ -38,7 +38,8 @@ examples:
   magshell run strip-10 --out results
   magshell run my-arm.toml --out results/my-arm
 
-DIR receives history.csv (the curves), shell.pvd and steps/ (for ParaView), summary.json and the pictures.
+DIR receives history.csv (the curves), shell.pvd and steps/ (for ParaView), summary.json and the pictures, and where
+the path turns or branches critical.csv and critical/ (the modes).
 Every converged step is on disk at once: Ctrl-C keeps them.""",
     "check": """
 examples:
@@ -143,6 +144,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _run(given: argparse.Namespace) -> int:
+    from magshell.output.critical import CriticalWriter
     from magshell.output.history import HistoryWriter
     from magshell.output.pictures import draw_pictures
     from magshell.output.summary import write_summary
@@ -159,7 +161,7 @@ def _run(given: argparse.Namespace) -> int:
     directory = _made(pathlib.Path(given.out))
     _forget_earlier_run(console, directory)
     progress = ProgressDisplay(console)
-    observers = [HistoryWriter(directory), VtuWriter(directory), progress]
+    observers = [HistoryWriter(directory), VtuWriter(directory), CriticalWriter(directory), progress]
     try:
         with progress:
             path = solve(problem.model, problem.settings, observers)

@@ -30,9 +30,7 @@ class External:
         Nodes with three free rotations.
     """
 
-    def __init__(
-        self, applied: Sequence[Applied], constraints: Constraints, places: Places, turning: AnyArray
-    ) -> None:
+    def __init__(self, applied: Sequence[Applied], constraints: Constraints, places: Places, turning: AnyArray) -> None:
         self._applied, self._constraints = applied, constraints
         self._at = [None if one.pairs is None else places(one.pairs) for one in applied]
         undeformed = State.undeformed(len(turning), 0, 0)

@@ -54,7 +54,10 @@ class Amounts(NamedTuple):
 
     def between(self, other: Amounts, fraction: float) -> Amounts:
         """This far on the way to others."""
-        return Amounts(*(a + fraction * (b - a) for a, b in zip(self, other, strict=True)))
+        field = self.field + fraction * (other.field - self.field)
+        angle = self.angle + fraction * (other.angle - self.angle)
+        loads = self.loads + fraction * (other.loads - self.loads)
+        return Amounts(field, angle, loads, self.held + fraction * (other.held - self.held))
 
 
 class Course(NamedTuple):
@@ -87,15 +90,13 @@ class Course(NamedTuple):
         now, start, end = self.amounts(load_factor), self.start, self.end
         direction = self.field.turned(now.angle)
         turning = now.field * (end.angle - start.angle) * np.cross(self.field.axis, direction)
-        return Loading(
-            (end.field - start.field) * direction + turning, end.loads - start.loads, end.held - start.held
-        )
+        return Loading((end.field - start.field) * direction + turning, end.loads - start.loads, end.held - start.held)
 
     def stops(self) -> list[float]:
         """Load factors that the path must hit, 1 the last: the stage's own, and where |B| meets the field's stops."""
         factors = {1.0, *self.stage.stops}
         start, change = self.start.field, self.end.field - self.start.field
-        for stop in self.field.stops if change else ():
+        for stop in np.asarray(self.field.stops, dtype=float).tolist() if change else ():
             for multiplier in (stop / self.field.magnitude, -stop / self.field.magnitude):
                 factors.add((multiplier - start) / change)
         rising: list[float] = []

@@ -16,6 +16,7 @@ from magshell.errors import InputError, suggest
 from magshell.history import amplitudes
 from magshell.loading import Amounts, Course, Loading
 from magshell.loads import Applied, Load
+from magshell.loads.checks import label
 from magshell.magnetics.deformation_gradient_energy import DeformationGradientEnergy
 from magshell.magnetics.field import UniformField
 from magshell.magnetics.micropolar_couple import MicropolarCouple
@@ -187,7 +188,9 @@ class Model:
         put(self, "probe_nodes", MappingProxyType(nodes))
         for stage in self.stages:
             if stage.probe is not None and stage.probe not in nodes:
-                raise InputError(f"stage '{stage.name}': probe '{stage.probe}' is unknown. {suggest(stage.probe, nodes)}")
+                raise InputError(
+                    f"stage '{stage.name}': probe '{stage.probe}' is unknown. {suggest(stage.probe, nodes)}"
+                )
         put(self, "_ends", self._amounts_at_the_ends())
         check_supported(mesh, self.normals, self.constraints)
         self._check_the_micro_rotation_matters()
@@ -198,6 +201,8 @@ class Model:
             return
         if any(np.any(forces[:, 7:]) for forces in self._forces_at_rest()):
             worker = "a moment"
+        elif any(one.pairs is not None and one.pairs.column_field == "omega" for one in self.applied):
+            worker = "a follower"
         elif self.field.magnitude > 0.0 and not isinstance(self.coupling, DeformationGradientEnergy):
             worker = type(self.coupling).__name__
         else:
@@ -238,7 +243,7 @@ class Model:
             turned[1:] = amplitudes(self.field.rotation, count, "field: rotation")
         loads = np.zeros((count + 1, len(self.loads)))
         for number, load in enumerate(self.loads):
-            loads[1:, number] = amplitudes(load.history, count, f"loads: {load.kind} on '{load.group}'")
+            loads[1:, number] = amplitudes(load.history, count, label(load))
         held = np.concatenate([np.zeros_like(self.constraints.values[:1]), self.constraints.values])
         return tuple(Amounts(float(field[k]), float(turned[k]), loads[k], held[k]) for k in range(count + 1))
 

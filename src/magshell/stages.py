@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -58,7 +59,7 @@ class Stage:
         if self.control not in CONTROLS:
             raise InputError(f"{where}: control is '{self.control}'. {suggest(self.control, CONTROLS)}")
         stops = tuple(float(stop) for stop in self.stops)
-        if any(not 0.0 < stop <= 1.0 for stop in stops) or any(b <= a for a, b in zip(stops, stops[1:], strict=False)):
+        if any(not 0.0 < stop <= 1.0 for stop in stops) or any(b <= a for a, b in pairwise(stops)):
             raise InputError(f"{where}: stops are {list(stops)}; they must rise, from above 0 to at most 1")
         object.__setattr__(self, "stops", stops)
         parts = {"probe": self.probe, "component": self.component, "target": self.target}

@@ -14,7 +14,6 @@ import scipy.sparse as sp
 from magshell.arrays import FloatArray
 from magshell.errors import InputError, suggest
 
-
 MOST_ITERATIONS, EIGENVALUE_TOLERANCE = 30, 1e-6
 
 

@@ -18,8 +18,10 @@ if TYPE_CHECKING:
     from magshell.solver.critical import CriticalPoint
     from magshell.solver.settings import Settings
 
-HEADING = ("number", "kind", "stage", "load_factor", "B1", "B2", "B3", "arc_length", "negative_pivots_before")
-HEADING += ("negative_pivots_after", "mode")
+HEADING = (
+    "number", "kind", "stage", "load_factor", "B1", "B2", "B3", "arc_length", "negative_pivots_before",
+    "negative_pivots_after", "mode",
+)  # fmt: skip
 
 
 class CriticalWriter(Observer):

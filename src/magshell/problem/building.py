@@ -20,6 +20,7 @@ from magshell.model import Model, Shell
 from magshell.problem import schema
 from magshell.problem.schema import ProblemFile
 from magshell.solver.settings import Settings
+from magshell.stages import Stage
 from magshell.supports import Clamp, Prescribe, SimpleSupport, Support, SymmetryPlane
 
 MOST_ELEMENTS = 1_000_000
@@ -81,7 +82,7 @@ def build(file: ProblemFile, source: str) -> Problem:
             micro_rotation=file.shell.micro_rotation,
             density=file.shell.density,
         )
-        field = UniformField(file.field.flux_density, file.field.stops)
+        field = _field(file.field)
         supports = _supports(file.supports, mesh)
         loads = _loads(file.loads, mesh)
         _probes_exist(file.probes, mesh)
@@ -92,6 +93,7 @@ def build(file: ProblemFile, source: str) -> Problem:
             coupling=COUPLINGS[file.field.coupling],
             probes=file.probes,
             loads=loads,
+            stages=_stages(file.stages),
         )
         settings = Settings(**file.solver.model_dump(exclude_none=True))
         make_solver(settings.linear_solver)
@@ -199,6 +201,18 @@ def _one_remanence(entry: schema.Remanence) -> Remanence:
             return remanence.circumferential(entry.magnitude, entry.axis, entry.towards)
 
 
+def _field(table: schema.FieldTable) -> UniformField:
+    return UniformField(table.flux_density, table.stops, table.history, table.rotation_axis, table.rotation)
+
+
+def _stages(tables: tuple[schema.StageTable, ...]) -> list[Stage]:
+    stages = []
+    for number, table in enumerate(tables):
+        with _at(f"stages[{number}]"):
+            stages.append(Stage(**{**table.model_dump(), "name": table.name or ""}))
+    return stages
+
+
 def _supports(tables: tuple[schema.Support, ...], mesh: Mesh) -> list[Support]:
     supports: list[Support] = []
     for number, table in enumerate(tables):
@@ -218,7 +232,7 @@ def _support(table: schema.Support) -> Support:
         case schema.SymmetryTable():
             return SymmetryPlane(table.group, table.normal)
         case schema.PrescribeTable():
-            return Prescribe(table.group, table.field, table.component, table.value)
+            return Prescribe(table.group, table.field, table.component, table.value, table.history)
 
 
 def _loads(tables: tuple[schema.Load, ...], mesh: Mesh) -> list[Load]:

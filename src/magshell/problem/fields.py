@@ -79,11 +79,14 @@ def _one_or_more(value: object) -> object:
     return [value] if isinstance(value, str) else value
 
 
-def _multipliers(value: object) -> object:
-    if not isinstance(value, list | tuple) or not value:
-        fault = "is empty" if value in ([], ()) else "is not a list"
-        raise InputError(f"{fault}; expected one multiplier for each stage")
-    return value
+def _one_each(what: str) -> Callable[[object], object]:
+    def read(value: object) -> object:
+        if not isinstance(value, list | tuple) or not value:
+            fault = "is empty" if value in ([], ()) else "is not a list"
+            raise InputError(f"{fault}; expected one {what} for each stage")
+        return value
+
+    return read
 
 
 def not_empty(value: object) -> object:
@@ -123,6 +126,7 @@ Pressure = Annotated[float, _quantity(units.STRESS), AfterValidator(_not_zero)]
 Stress = Annotated[float, _quantity(units.STRESS)]
 Acceleration = Annotated[float, _quantity(units.ACCELERATION)]
 PositiveDensity = Annotated[float, _positive_quantity(units.DENSITY)]
+Angle = Annotated[float, _quantity(units.ANGLE)]
 Degrees = Annotated[float, _quantity(units.ANGLE, unit="deg")]
 Number = Annotated[float, _quantity(units.NUMBER)]
 PositiveNumber = Annotated[float, _positive_quantity(units.NUMBER)]
@@ -156,7 +160,8 @@ AccelerationVector = Annotated[
     _list_of(3, "components of the acceleration along X1, X2, X3"),
     AfterValidator(_nonzero),
 ]
-History = Annotated[tuple[Number, ...], BeforeValidator(_multipliers)]
+History = Annotated[tuple[Number, ...], BeforeValidator(_one_each("multiplier"))]
+Rotation = Annotated[tuple[Angle, ...], BeforeValidator(_one_each("angle"))]
 Corner = Annotated[tuple[Length, ...], _list_of((2, 3), "coordinates X1, X2 and, out of the plane, X3")]
 Corners = Annotated[tuple[Corner, Corner, Corner, Corner], _list_of(4, "corners, one after the other")]
 

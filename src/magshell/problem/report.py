@@ -86,6 +86,7 @@ def describe(problem: Problem) -> Report:
             "Field": list(_field(problem, figures)),
             **({"Loads": list(load_report.lines(problem, strong))} if problem.file.loads else {}),
             "Supports": list(_supports(problem)),
+            **({"Stages": list(_stages(problem))} if len(problem.model.stages) > 1 or problem.file.stages else {}),
             "Probes": list(_probes(problem, figures.extent)),
         },
         warnings=list(_doubts(problem, figures, strong)),
@@ -242,6 +243,22 @@ def _supports(problem: Problem) -> Iterator[tuple[str, str]]:
                 yield table.group, f"prescribe {what} = {value}, {nodes}"
             case _:
                 yield table.group, f"{table.kind}, {nodes}"
+
+
+def _stages(problem: Problem) -> Iterator[tuple[str, str]]:
+    for number, stage in enumerate(problem.model.stages):
+        end = problem.model.course(number).at(1.0)
+        parts = [f"{stage.control} control"]
+        if problem.model.field.magnitude:
+            field = ", ".join(show(component, FLUX_DENSITY) for component in end.flux_density)
+            parts.append(f"field ({field})")
+        for load, multiplier in zip(problem.model.loads, end.loads, strict=True):
+            parts.append(f"{load.kind} × {multiplier:.4g}")
+        if stage.target is not None:
+            parts.append(f"until u{stage.component} of {stage.probe} is {show(stage.target, LENGTH)}")
+        if stage.branch is not None:
+            parts.append(f"from critical point {stage.branch}, side {stage.side:+d}")
+        yield f"{number + 1} {stage.name}".strip(), ", ".join(parts)
 
 
 def _probes(problem: Problem, extent: float) -> Iterator[tuple[str, str]]:

@@ -214,18 +214,29 @@ class CircumferentialRemanence(_Remanence):
 
 
 class FieldTable(Table):
-    """The external field, proportional to the load factor."""
+    """The external field."""
 
     flux_density: f.FluxVector
+    history: f.History | None = None
+    rotation_axis: f.Direction | None = None
+    rotation: f.Rotation | None = None
     stops: tuple[f.PositiveFluxDensity, ...] = ()
     coupling: Literal["couple", "micro-rotation", "deformation-gradient"] = "couple"
 
     @model_validator(mode="after")
+    def _axis_and_angles_go_together(self) -> FieldTable:
+        if self.rotation is not None and self.rotation_axis is None:
+            raise key_error("rotation_axis", "is missing beside rotation")
+        if self.rotation is None and self.rotation_axis is not None:
+            raise key_error("rotation", "is missing beside rotation_axis")
+        return self
+
+    @model_validator(mode="after")
     def _stops_lie_on_the_way(self) -> FieldTable:
-        end = sum(component**2 for component in self.flux_density) ** 0.5
+        end = sum(component**2 for component in self.flux_density) ** 0.5 * max(map(abs, self.history or (1.0,)))
         for number, stop in enumerate(self.stops):
             if stop > end * (1.0 + 1e-12):
-                raise key_error(f"stops[{number}]", f"{stop:g} T lies beyond the end of the path, {end:g} T")
+                raise key_error(f"stops[{number}]", f"{stop:g} T lies beyond the largest field of the path, {end:g} T")
             if number and stop <= self.stops[number - 1]:
                 raise key_error(f"stops[{number}]", "does not exceed the one before; stops must rise")
         return self
@@ -255,12 +266,13 @@ class SymmetryTable(_Support):
 
 
 class PrescribeTable(_Support):
-    """A nodal field, or one component of it, that reaches `value` at load factor 1."""
+    """A nodal field, or one component of it, that reaches `value`."""
 
     kind: Literal["prescribe"]
     field: Literal["u", "w", "phi", "omega"]
     component: Literal[1, 2, 3] | None = None
     value: float | tuple[float, float, float] = 0.0
+    history: f.History | None = None
 
     @field_validator("value", mode="before")
     @classmethod
@@ -323,6 +335,19 @@ class GravityTable(_Load):
     group: f.Name | None = None
 
 
+class StageTable(Table):
+    """A part of the load path."""
+
+    name: f.Name | None = None
+    control: Literal["load", "arc-length", "displacement"] = "load"
+    stops: tuple[f.PositiveNumber, ...] = ()
+    probe: f.ProbeName | None = None
+    component: Literal[1, 2, 3] | None = None
+    target: f.Length | None = None
+    branch: f.Count | None = None
+    side: Literal[1, -1] = 1
+
+
 class SolverTable(Table):
     """How the path is followed; what is left out has the default of `magshell.Settings`."""
 
@@ -363,5 +388,6 @@ class ProblemFile(Table):
     field: FieldTable = FieldTable(flux_density=(0.0, 0.0, 0.0))
     loads: tuple[Annotated[Load, Field(discriminator="kind")], ...] = ()
     supports: Annotated[tuple[Annotated[Support, Field(discriminator="kind")], ...], BeforeValidator(f.not_empty)]
+    stages: tuple[StageTable, ...] = ()
     probes: dict[f.ProbeName, f.Position] = {}
     solver: SolverTable = SolverTable()

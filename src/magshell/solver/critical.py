@@ -85,10 +85,10 @@ def locate(system: System, metric: Metric, before: Point, after: Point, report: 
         A state between the two is not found.
     """
     search = _Search(system, metric, before, after, report)
-    if before.slope.load * after.slope.load >= 0.0:
+    turn = search.turn() if before.slope.load * after.slope.load < 0.0 else None
+    if turn is None:
         yield from search.bifurcations(0.0, search.length)
         return
-    turn = search.root(lambda point: point.slope.load, 0.0, search.length)
     margin = CLEARANCE * search.length
     yield from search.bifurcations(0.0, max(turn - margin, 0.0))
     yield search.found(LIMIT_POINT, turn)
@@ -113,12 +113,15 @@ class _Search:
         else:
             trial = trial_at(self.system.discretisation, self.system.course, [self.after, self.before], distance)
             chord = trial.state.u - self.before.state.u, trial.load_factor - self.before.load_factor
-            sphere = Sphere(
-                self.metric, self.before.state.u, self.before.load_factor, *chord, self.metric.norm(*chord)
-            )
+            sphere = Sphere(self.metric, self.before.state.u, self.before.load_factor, *chord, self.metric.norm(*chord))
             solution = newton(self.system, trial, sphere, lambda *heard: self.report(trial, *heard))
             along = chord
         return point_at(self.system, self.metric, solution, self.before.arc_length + distance, along)
+
+    def turn(self) -> float | None:
+        """Distance of the limit point."""
+        ends = (self.point(distance).slope.load for distance in (0.0, self.length))
+        return self.root(lambda point: point.slope.load, 0.0, self.length) if np.prod([*ends]) < 0.0 else None
 
     def root(self, function: Callable[[Point], float], low: float, high: float) -> float:
         """Distance at which a function of the point changes its sign."""

@@ -162,7 +162,18 @@ class Path:
             "dofs": self.discretisation.dofs,
             "linear_solver": self.solver_name,
             "cpu_seconds": self.cpu_seconds,
+            "stage": last.stage + 1 if last else 1,
             "load_factor": last.load_factor if last else 0.0,
+            "negative_pivots": last.negative_pivots if last else None,
+            "critical_points": [
+                {
+                    "kind": point.kind,
+                    "stage": point.stage + 1,
+                    "load_factor": point.load_factor,
+                    "flux_density": point.flux_density.tolist(),
+                }
+                for point in self.critical_points
+            ],
             "force_imbalance": max((b.force_imbalance for b in balances), default=0.0),
             "moment_imbalance": max((b.moment_imbalance for b in balances), default=0.0),
             "probes": {name: self.probe(name).u[-1].tolist() for name in self.model.probe_nodes} if last else {},

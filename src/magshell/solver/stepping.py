@@ -8,12 +8,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from magshell.arrays import FloatArray
 from magshell.assembly import Discretisation
 from magshell.errors import SolveError
 from magshell.linalg import make_solver, nested_dissection
 from magshell.loading import Amounts
 from magshell.model import Model
-from magshell.arrays import FloatArray
 from magshell.shell.state import State
 from magshell.solver.balance import Balance, balance
 from magshell.solver.constraints import Constraint, Metric, Sphere
@@ -34,6 +34,8 @@ PATIENCE = 2
 WANDERING = 400
 # Largest angle between a step and the direction of the path at either end: beyond it the path has been left.
 SHARPEST = np.pi / 3
+# Largest distance of a solution from its trial state, in lengths of the step: beyond it another path may have been met.
+MISS = 0.2
 # A step whose load grows by less than this share of what the slopes at both its ends say has jumped over a fold.
 JUMP = 0.5
 # First step along the mode of a branch, in sizes of the body.
@@ -183,9 +185,7 @@ class _Follower:
         if nearer and not self.by_arc:
             return trial, goal.hold(trial), False
         chord: Direction = trial.state.u - track[-1].state.u, trial.load_factor - track[-1].load_factor
-        sphere = Sphere(
-            self.metric, track[-1].state.u, track[-1].load_factor, *chord, self.metric.norm(*chord)
-        )
+        sphere = Sphere(self.metric, track[-1].state.u, track[-1].load_factor, *chord, self.metric.norm(*chord))
         return trial, sphere, False
 
     def _trial(self, distance: float, load_factor: float | None = None) -> Trial:
@@ -205,17 +205,17 @@ class _Follower:
         """The point that a step leads to, which is then kept; None, and the observers know why, if it failed."""
         last = self.track[-1]
         try:
-            solution = newton(
-                self.system, trial, constraint, lambda *heard: self._report(trial, *heard)
-            )
+            solution = newton(self.system, trial, constraint, lambda *heard: self._report(trial, *heard))
             found = solution.trial
             chord: Direction = found.state.u - last.state.u, found.load_factor - last.load_factor
             point = point_at(self.system, self.metric, solution, 0.0, chord)
             length = arc(self.metric, chord, last.slope, point.slope)
             point = point._replace(arc_length=last.arc_length + length)
-            self._check(point, chord, length)
+            missed: Direction = found.state.u - trial.state.u, found.load_factor - trial.load_factor
+            self._check(point, chord, length, self.metric.norm(*missed))
             if not at_goal and (goal.wanted - goal.value(last)) * (goal.wanted - goal.value(point)) <= 0.0:
                 raise StepFailure("the step goes beyond a stop")
+            critical = self._located(last, point)
         except StepFailure as failure:
             self.reason = str(failure)
             self.path.cuts += 1
@@ -224,13 +224,17 @@ class _Follower:
             return None
         self.track.append(point)
         self._keep(point, solution, self._balance(solution))
-        if passed(last, point):
-            self._locate(last, point)
+        for one in critical:
+            self.path.critical_points.append(one)
+            for observer in self.observers:
+                observer.critical(one)
         return point
 
-    def _check(self, point: Point, chord: Direction, length: float) -> None:
+    def _check(self, point: Point, chord: Direction, length: float, missed: float) -> None:
         """Whether a point lies on the path that was followed so far; raises StepFailure with what speaks against it."""
         last, distance = self.track[-1], self.metric.norm(*chord)
+        if missed > MISS * length:
+            raise StepFailure("the solution is not where the path was expected")
         sharpest = np.cos(SHARPEST) * distance
         for slope in (last.slope, point.slope):
             if self.metric.product(slope.direction, chord) < sharpest:
@@ -239,23 +243,20 @@ class _Follower:
         if least > 0.0 and chord[1] < JUMP * least * length:
             raise StepFailure("the step jumps over a part of the path where the load factor falls")
 
-    def _locate(self, before: Point, after: Point) -> None:
-        """Find and report the critical points between two steps."""
-        try:
-            for found in locate(self.system, self.metric, before, after, self._report):
-                point = found.point
-                course = self.system.course
-                critical = CriticalPoint(
-                    len(self.path.critical_points) + 1, found.kind, self.stage, point.load_factor,
-                    course.at(point.load_factor).flux_density, point.arc_length, point.state, found.mode,
-                    found.negative_pivots,
-                )  # fmt: skip
-                self.path.critical_points.append(critical)
-                for observer in self.observers:
-                    observer.critical(critical)
-        except StepFailure as failure:
-            for observer in self.observers:
-                observer.cut(after.load_factor, f"a critical point before it could not be located: {failure}")
+    def _located(self, before: Point, after: Point) -> list[CriticalPoint]:
+        """The critical points between two points; raises StepFailure if no path leads from one to the other."""
+        if not passed(before, after):
+            return []
+        course, number = self.system.course, len(self.path.critical_points)
+        return [
+            CriticalPoint(
+                number + count, kind, self.stage, point.load_factor, course.at(point.load_factor).flux_density,
+                point.arc_length, point.state, mode, pivots,
+            )
+            for count, (kind, point, mode, pivots) in enumerate(
+                locate(self.system, self.metric, before, after, self._report), start=1
+            )
+        ]  # fmt: skip
 
     def _balance(self, solution: Solution) -> Balance:
         loading = self.system.course.at(solution.trial.load_factor)
@@ -266,9 +267,7 @@ class _Follower:
         seconds = time.perf_counter() - self.begin
         for observer in self.observers:
             observer.iterated(
-                Iteration(
-                    len(self.path.steps), self.stage, trial.load_factor, iteration, residual, kind, seconds
-                )
+                Iteration(len(self.path.steps), self.stage, trial.load_factor, iteration, residual, kind, seconds)
             )
 
     def _keep(self, point: Point, solution: Solution, balanced: Balance | None) -> None:

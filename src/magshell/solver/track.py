@@ -109,17 +109,21 @@ def _stresses_ahead(
     last = track[-1]
     sloping = discretisation.predicted_stresses(last.state, last.slope.increment, last.slope.d_alpha)
     points = [point.stresses for point in track[-3:-1]]
-    return Stresses(*(
-        own + on_slope * (slope - own) + sum(share * (other - own) for share, other in zip(shares, others, strict=True))
-        for own, slope, *others in zip(last.stresses, sloping, *points, strict=True)
-    ))
+    return Stresses(
+        *(
+            own
+            + on_slope * (slope - own)
+            + sum(share * (other - own) for share, other in zip(shares, others, strict=True))
+            for own, slope, *others in zip(last.stresses, sloping, *points, strict=True)
+        )
+    )
 
 
 def value_at(track: Sequence[Point], values: Sequence[float], slope: float, distance: float) -> float:
     """A scalar this far ahead, from its values at the last (up to three) points and its slope at the last."""
     on_slope, shares = _weights(track, distance)
     change = sum(share * (value - values[-1]) for share, value in zip(shares, values[:-1], strict=True))
-    return values[-1] + on_slope * slope + change
+    return float(values[-1] + on_slope * slope + change)
 
 
 def crossing(
@@ -131,7 +135,7 @@ def crossing(
     cubic = np.polyfit(distances / longest, np.array(ahead) / (distances / longest), 2)
     roots = np.roots([*cubic, values[-1] - wanted])
     inside = [root.real for root in roots if abs(root.imag) < 1e-9 and 0.0 < root.real <= 1.0]
-    return longest * min(inside) if inside else None
+    return longest * float(min(inside)) if inside else None
 
 
 def point_at(system: System, metric: Metric, solution: Solution, arc_length: float, along: Direction) -> Point:
