@@ -73,7 +73,10 @@ class FakePath:
         q = np.zeros((len(u), 4))
         q[:, 0], q[:, 2] = np.cos(bend * s / 2), -np.sin(bend * s / 2)
         state = SimpleNamespace(u=u * bend, w=6 * u * bend, phi=-0.3 * s * bend / RADIUS, q=q)
-        return SimpleNamespace(number=number, load_factor=load, state=state)
+        return SimpleNamespace(
+            number=number, load_factor=load, state=state, flux_density=load * self.model.field.vector,
+            stage=0, arc_length=2.0 * load, negative_pivots=int(load == 0.6), loads=np.zeros(0),
+        )  # fmt: skip
 
 
 @pytest.fixture

@@ -15,7 +15,7 @@ from magshell.output.summary import write_summary
 def read(file):
     with open(file, newline="", encoding="utf-8") as lines:
         heading, *rows = csv.reader(lines)
-    return heading, np.array(rows, dtype=float)
+    return heading, np.array([[number or "nan" for number in row] for row in rows], dtype=float)
 
 
 def test_history_holds_field_and_probes_exactly(path, tmp_path):
@@ -25,11 +25,12 @@ def test_history_holds_field_and_probes_exactly(path, tmp_path):
         writer.converged(step)
     heading, rows = read(tmp_path / "history.csv")
     probes = [f"{name}.u{i}" for name in ("tip", 'edge, "low"') for i in (1, 2, 3)]
-    assert heading == ["load_factor", "B1", "B2", "B3", *probes]
+    assert heading == ["load_factor", "B1", "B2", "B3", *probes, "stage", "arc_length", "negative_pivots"]
     loads = np.array([step.load_factor for step in path.steps])
     expected = [loads, *np.outer([0.0, 0.0, 20e-3], loads)]
     for node in path.model.probe_nodes.values():
         expected += list(np.array([step.state.u[node] for step in path.steps]).T)
+    expected += [np.ones(len(loads)), 2.0 * loads, [0, 0, 0, 1, 0]]
     np.testing.assert_array_equal(rows, np.transpose(expected))
 
 
@@ -39,6 +40,16 @@ def test_history_is_on_disk_after_every_step(path, tmp_path):
     for number, step in enumerate(path.steps, start=1):
         writer.converged(step)
         assert len(read(tmp_path / "new" / "history.csv")[1]) == number
+
+
+def test_history_of_a_later_stage_whose_pivots_nobody_can_count(path, tmp_path):
+    writer = HistoryWriter(tmp_path)
+    writer.started(path.discretisation, None)
+    step = path.steps[2]
+    step.stage, step.negative_pivots = 2, None
+    writer.converged(step)
+    line = (tmp_path / "history.csv").read_text().splitlines()[1]
+    assert line.endswith(",3,0.6,"), line
 
 
 def test_old_history_stays_until_the_run_starts(path, tmp_path):

@@ -13,6 +13,7 @@ from conftest import LENGTH, RADIUS, FakePath
 from PIL import Image
 
 from magshell.errors import InputError
+from magshell.magnetics.field import UniformField
 from magshell.output import rendering
 from magshell.output.curve import curve_figure
 from magshell.output.pictures import draw_curve, draw_pictures, draw_shape
@@ -143,10 +144,34 @@ def test_curve_shows_probes_over_field_and_load(path):
             else:
                 np.testing.assert_allclose(line.get_xdata(), 20 * loads)
                 np.testing.assert_allclose(line.get_ydata(), 1e3 * u[:, i - 1])
-    assert not lines
+    unstable = [step.load_factor for step in path.steps if step.negative_pivots]
+    assert lines.pop("unstable").get_markerfacecolor() == "white"
+    assert len(lines) == 5, "one hollow mark on each curve"
+    for label, line in lines.items():
+        assert (label[0], line.get_markerfacecolor(), *line.get_xdata()) == ("_", "white", *(20 * np.array(unstable)))
     (above,) = axes.child_axes
     load = 1e3 * 20e-3 * 80e-3 / (135e3 * 4e-7 * np.pi)
     assert above._functions[0](20.0) == pytest.approx(load)
+
+
+def test_stable_path_speaks_of_no_unstable_state(path):
+    path.steps[3].negative_pivots = None
+    assert "unstable" not in {line.get_label() for line in curve_figure(path).axes[0].lines}
+
+
+def test_curve_of_a_field_that_turns_has_the_load_parameter_below(path):
+    field = UniformField((0.0, 0.0, 20e-3), history=(1, 1), rotation_axis=(0, 1, 0), rotation=(0, 1))
+    path.model.field = field
+    path.steps[4].stage = 1
+    axes = curve_figure(path).axes[0]
+    assert axes.get_xlabel() == "load factor"
+    assert not axes.child_axes
+    assert list(axes.lines[0].get_xdata()) == [0.0, 0.1, 0.3, 0.6, 2.0]
+
+
+def test_curve_of_a_reversed_field_runs_to_the_left(path):
+    path.steps[4].flux_density = -path.steps[4].flux_density
+    assert curve_figure(path).axes[0].lines[0].get_xdata()[-1] == pytest.approx(-20.0)
 
 
 def test_negligible_components_are_left_out():

@@ -37,6 +37,21 @@ def test_series_has_the_load_factor_as_time(path, written):
         np.testing.assert_array_equal(reader.read()[0].point_data["displacement"], step.state.u)
 
 
+@pytest.mark.parametrize(
+    ("stages", "loads", "times"),
+    [
+        ([0, 0, 0, 1, 1], [0.0, 0.5, 1.0, 0.5, 1.0], [0.0, 0.5, 1.0, 1.5, 2.0]),
+        ([0, 0, 0, 0, 0], [0.0, 0.5, 0.4, 0.3, 1.0], [0.0, 1.0, 2.0, 3.0, 4.0]),
+    ],
+    ids=["stages", "turning back"],
+)
+def test_times_rise(path, tmp_path, stages, loads, times):
+    for step, stage, load in zip(path.steps, stages, loads, strict=True):
+        step.stage, step.load_factor = stage, load
+    save_path(path, tmp_path / "tube.pvd")
+    assert list(pyvista.get_reader(str(tmp_path / "tube.pvd")).time_values) == times
+
+
 def test_mesh_is_the_reference_body_of_quadratic_quads(path, written):
     grid = pyvista.read(written / "steps" / "step-0003.vtu")
     mesh = path.discretisation.mesh
@@ -74,7 +89,7 @@ def test_files_hold_exactly_the_registered_outputs(path, written):
 
 def test_field_and_groups_are_recorded(path, written):
     grid = pyvista.read(written / "steps" / "step-0002.vtu")
-    assert (grid.field_data["step"], grid.field_data["load_factor"]) == (2, 0.3)
+    assert [grid.field_data[name] for name in ("step", "stage", "load_factor")] == [2, 1, 0.3]
     np.testing.assert_allclose(grid.field_data["flux_density"], [[0, 0, 6e-3]], rtol=1e-15)
     np.testing.assert_allclose(grid.field_data["flux_density_magnitude"], 6e-3, rtol=1e-15)
     names = texts(grid, "element_group_names")

@@ -48,7 +48,9 @@ def test_steps_before_the_failure_are_kept() -> None:
     assert len(steps) > 2
     assert steps[1].load_factor == pytest.approx(4e-4, rel=1e-12)
     last = steps[-1]
-    assert f"stopped at load factor {last.load_factor:.6g} ({5e3 * last.load_factor:.4g} mT)" in error.reason, error.reason
+    assert f"stopped at load factor {last.load_factor:.6g} ({5e3 * last.load_factor:.4g} mT)" in error.reason, (
+        error.reason
+    )
     tip = error.path.probe("tip")
     assert tip.u3[1] == pytest.approx(solve(strip(field=(0, 0, 2e-3))).probe("tip").u3[-1], rel=1e-6)
 

@@ -50,7 +50,7 @@ def pulled(stretch: float, width_held: bool, steps: float) -> Path:
 def force_on(path: Path, group: str) -> np.ndarray:
     """Sum of the forces (3,), N, that the supports exert on a group's nodes at the end."""
     step = path.steps[-1]
-    residual = path.discretisation.assemble(step.state, path.discretisation.model.loading(step.load_factor), tangent=False).residual
+    residual = path.discretisation.assemble(step.state, path.loading(step), tangent=False).residual
     nodes = path.model.shell.mesh.nodes_of(group)
     return path.discretisation.to_global(residual)[nodes, :3].sum(axis=0)
 

@@ -1,0 +1,68 @@
+"""critical.csv and the modes for ParaView."""
+
+from __future__ import annotations
+
+import csv
+
+import numpy as np
+import pytest
+import pyvista
+
+from magshell.output.critical import CriticalWriter
+from magshell.solver.critical import BIFURCATION, LIMIT_POINT, CriticalPoint
+
+
+@pytest.fixture
+def points(path):
+    """A limit point of the first stage and a bifurcation of the second, whose pivots nobody can count."""
+    step = path.steps[2]
+    mode = np.random.default_rng(3).normal(size=(len(step.state.u), 10))
+    common = (0.7, np.array([0.0, 1e-3, 2e-3]), 1.25, step.state, mode)
+    return [CriticalPoint(1, LIMIT_POINT, 0, *common, (0, 1)), CriticalPoint(2, BIFURCATION, 1, *common, (None, None))]
+
+
+@pytest.fixture
+def written(path, points, tmp_path):
+    writer = CriticalWriter(tmp_path)
+    writer.started(path.discretisation, None)
+    for point in points:
+        writer.critical(point)
+    return tmp_path
+
+
+def test_table(written):
+    with open(written / "critical.csv", newline="", encoding="utf-8") as lines:
+        heading, *rows = csv.reader(lines)
+    assert heading == (
+        "number,kind,stage,load_factor,B1,B2,B3,arc_length,negative_pivots_before,negative_pivots_after,mode"
+    ).split(",")
+    numbers = ["0.7", "0.0", "0.001", "0.002", "1.25"]
+    assert rows == [
+        ["1", "limit point", "1", *numbers, "0", "1", "critical/point-01.vtu"],
+        ["2", "bifurcation", "2", *numbers, "", "", "critical/point-02.vtu"],
+    ]
+
+
+def test_file_holds_state_and_mode(path, points, written):
+    grid = pyvista.read(written / "critical" / "point-02.vtu")
+    mode, state = points[1].mode, points[1].state
+    np.testing.assert_array_equal(grid.point_data["displacement"], state.u)
+    np.testing.assert_array_equal(grid.point_data["mode"], mode[:, :3])
+    np.testing.assert_array_equal(grid.point_data["mode_director"], mode[:, 3:6])
+    np.testing.assert_array_equal(grid.point_data["mode_rotation"], mode[:, 7:])
+    np.testing.assert_allclose(grid.field_data["flux_density"], [[0.0, 1e-3, 2e-3]])
+    assert grid.field_data["stage"] == 2
+
+
+def test_path_without_critical_points_leaves_nothing_of_an_old_run(path, written):
+    (written / "critical" / "point-notes.txt").touch()
+    CriticalWriter(written).started(path.discretisation, None)
+    assert sorted(file.name for file in written.rglob("*") if file.is_file()) == ["point-notes.txt"]
+
+
+def test_disk_error_names_the_file(path, points, tmp_path):
+    (tmp_path / "critical").touch()
+    writer = CriticalWriter(tmp_path)
+    writer.started(path.discretisation, None)
+    with pytest.raises(OSError, match="critical"):
+        writer.critical(points[0])
