@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from magshell.materials import MicropolarMooneyRivlin, MicropolarNeoHookean, MicropolarStVenantKirchhoff
     from magshell.model import Model, Shell
     from magshell.solver import CriticalPoint, Observer, Path, Settings, Step, solve
+    from magshell.solver.buckling import Buckling, BucklingMode, buckling
     from magshell.stages import Stage
     from magshell.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane
 
@@ -39,6 +40,7 @@ _HOME = {
     "magshell.materials": ("MicropolarMooneyRivlin", "MicropolarNeoHookean", "MicropolarStVenantKirchhoff"),
     "magshell.model": ("Model", "Shell"),
     "magshell.solver": ("CriticalPoint", "Observer", "Path", "Settings", "Step", "solve"),
+    "magshell.solver.buckling": ("Buckling", "BucklingMode", "buckling"),
     "magshell.stages": ("Stage",),
     "magshell.supports": ("Clamp", "Prescribe", "SimpleSupport", "SymmetryPlane"),
 }
@@ -46,6 +48,8 @@ _MODULES = {"mesh": "magshell.mesh", "problem": "magshell.problem", "remanence":
 _NAMES = {name: home for home, names in _HOME.items() for name in names}
 
 __all__ = [
+    "Buckling",
+    "BucklingMode",
     "Clamp",
     "CriticalPoint",
     "DeformationGradientEnergy",
@@ -73,6 +77,7 @@ __all__ = [
     "SymmetryPlane",
     "Traction",
     "UniformField",
+    "buckling",
     "mesh",
     "problem",
     "remanence",

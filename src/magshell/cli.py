@@ -11,7 +11,7 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING
 
 from magshell.errors import InputError, SolveError
-from magshell.units import LENGTH, show
+from magshell.units import FLUX_DENSITY, LENGTH, show
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -30,6 +30,7 @@ examples:
   magshell examples --copy gripper        copy one to change it
   magshell check gripper.toml             see what was understood, without solving
   magshell run gripper.toml --out results
+  magshell buckling my-plate.toml --out results
   magshell reproduce --out reproduction   the source paper's examples beside what it says
 
 exit status: 0 solved, 1 not solved, 2 bad input, 130 interrupted""",
@@ -41,6 +42,14 @@ examples:
 DIR receives history.csv (the curves), shell.pvd and steps/ (for ParaView), summary.json and the pictures, and where
 the path turns or branches critical.csv and critical/ (the modes).
 Every converged step is on disk at once: Ctrl-C keeps them.""",
+    "buckling": """
+examples:
+  magshell buckling my-plate.toml --out results
+  magshell buckling my-plate.toml --modes 8 --out results
+
+The stages before the last one are followed; the multipliers are load factors of the last stage, about the state that
+they lead to (with one stage: about the undeformed state). Negative: the loading reversed.
+DIR receives buckling.csv and buckling/ (the modes, for ParaView and as pictures).""",
     "check": """
 examples:
   magshell check gripper
@@ -118,6 +127,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
     for name, command, about in (
         ("run", _run, "solve a problem and write the results"),
+        ("buckling", _buckling, "estimate the loads at which a problem buckles, and the modes"),
         ("check", _check, "say what a problem file means, without solving"),
         ("examples", _examples, "list the built-in problems, or copy one"),
         ("reproduce", _reproduce, "solve the examples of the source paper and compare with it"),
@@ -131,12 +141,14 @@ def _parser() -> argparse.ArgumentParser:
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
         one.set_defaults(command=command)
-        if name in ("run", "check"):
+        if name in ("run", "buckling", "check"):
             one.add_argument("problem", metavar="FILE|NAME", help="a problem file (.toml) or a built-in problem")
         if name == "reproduce":
             one.add_argument("names", metavar="NAME", nargs="*", help="an example of the paper; all six without it")
-        if name in ("run", "reproduce"):
+        if name in ("run", "buckling", "reproduce"):
             one.add_argument("--out", metavar="DIR", required=True, help="folder for the results, made if missing")
+        if name == "buckling":
+            one.add_argument("--modes", metavar="N", type=int, default=4, help="how many modes (default: 4)")
         if name == "examples":
             one.add_argument("--copy", metavar="NAME", help="write the problem file of NAME to DEST")
             one.add_argument("dest", metavar="DEST", nargs="?", help="a file or folder; here, without it")
@@ -184,6 +196,37 @@ def _run(given: argparse.Namespace) -> int:
         _say(console, f"picture: {picture}" if isinstance(picture, pathlib.Path) else picture)
     _say(console, f"results: {directory} (history.csv, summary.json; shell.pvd opens in ParaView)")
     return SOLVED if path.converged else NOT_SOLVED
+
+
+def _buckling(given: argparse.Namespace) -> int:
+    from magshell.output.buckling import write_buckling
+    from magshell.problem import load
+    from magshell.problem.report import describe
+    from magshell.progress import ProgressDisplay
+    from magshell.solver.buckling import buckling
+
+    problem = load(given.problem)
+    console = _console()
+    _say(console, problem.title)
+    _say_doubts(console, describe(problem))
+    directory = _made(pathlib.Path(given.out))
+    progress = ProgressDisplay(console)
+    try:
+        with progress:
+            found = buckling(problem.model, given.modes, problem.settings, [progress])
+    except SolveError as error:
+        _complain(f"{problem.source}: not solved: {error.reason}")
+        return NOT_SOLVED
+    if not found.modes:
+        _say(console, "no real multipliers: the loading does not make the tangent singular")
+    for mode in found.modes:
+        magnitude = sum(component**2 for component in mode.flux_density.tolist()) ** 0.5
+        field = f" ({show(magnitude, FLUX_DENSITY)})" if magnitude else ""
+        _say(console, f"mode {mode.number}: load factor {mode.load_factor:.6g}{field}")
+    for picture in write_buckling(found, directory):
+        _say(console, f"picture: {picture}")
+    _say(console, f"results: {directory} (buckling.csv; buckling/ opens in ParaView)")
+    return SOLVED
 
 
 def _reproduce(given: argparse.Namespace) -> int:

@@ -15,6 +15,7 @@ from magshell.solver.events import Observer
 
 if TYPE_CHECKING:
     from magshell.assembly import Discretisation
+    from magshell.solver.buckling import BucklingMode
     from magshell.solver.critical import CriticalPoint
     from magshell.solver.settings import Settings
 
@@ -56,12 +57,17 @@ class CriticalWriter(Observer):
     def critical(self, point: CriticalPoint) -> None:
         """Write the mode, then the row."""
         name = f"critical/point-{point.number:02d}.vtu"
-        content = grid(self._discretisation, point)
-        for array, field in (("mode", "u"), ("mode_director", "w"), ("mode_rotation", "omega")):
-            content.point_data.set_array(np.ascontiguousarray(point.mode[:, COLUMNS[field]]), array)
-        write_atomically(self.file.parent / name, vtu(content))
+        write_mode(self.file.parent / name, self._discretisation, point)
         if not self.file.exists():
             write_atomically(self.file, csv_line(HEADING).encode())
         numbers = [repr(float(value)) for value in (point.load_factor, *point.flux_density, point.arc_length)]
         pivots = ["" if count is None else str(count) for count in point.negative_pivots]
         append_line(self.file, csv_line([str(point.number), point.kind, str(point.stage + 1), *numbers, *pivots, name]))
+
+
+def write_mode(file: pathlib.Path, discretisation: Discretisation, point: CriticalPoint | BucklingMode) -> None:
+    """A state with its mode as a VTU file."""
+    content = grid(discretisation, point)
+    for array, field in (("mode", "u"), ("mode_director", "w"), ("mode_rotation", "omega")):
+        content.point_data.set_array(np.ascontiguousarray(point.mode[:, COLUMNS[field]]), array)
+    write_atomically(file, vtu(content))

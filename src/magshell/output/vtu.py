@@ -17,6 +17,7 @@ from magshell.solver.events import Observer
 
 if TYPE_CHECKING:
     from magshell.assembly import Discretisation
+    from magshell.solver.buckling import BucklingMode
     from magshell.solver.critical import CriticalPoint
     from magshell.solver.path import Path, Step
     from magshell.solver.settings import Settings
@@ -92,13 +93,13 @@ def save_path(path: Path, file: str | os.PathLike[str]) -> None:
         writer.converged(step)
 
 
-def grid(discretisation: Discretisation, step: Step | CriticalPoint) -> Any:
+def grid(discretisation: Discretisation, step: Step | CriticalPoint | BucklingMode) -> Any:
     """One step as a `pyvista.UnstructuredGrid`.
 
     Parameters
     ----------
     discretisation : Discretisation
-    step : Step or CriticalPoint
+    step : Step, CriticalPoint or BucklingMode
 
     Returns
     -------

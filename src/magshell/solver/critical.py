@@ -149,5 +149,9 @@ class _Search:
         sides = self.point(distance - margin).negative_pivots, self.point(distance + margin).negative_pivots
         point = self.point(distance)
         mode = self.system.discretisation.expand(self.system.linear_solver.smallest_eigenpair()[1])
-        largest = float(np.linalg.norm(mode[:, :3], axis=1).max()) or 1.0
-        return Found(kind, point, mode / largest, sides)
+        return Found(kind, point, normalised(mode), sides)
+
+
+def normalised(mode: FloatArray) -> FloatArray:
+    """A mode (nodes, 10) of largest displacement 1 m."""
+    return mode / (float(np.linalg.norm(mode[:, :3], axis=1).max()) or 1.0)

@@ -1,0 +1,69 @@
+"""`buckling.csv` and `buckling/`: critical multipliers with their modes, for ParaView and as pictures."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+import pathlib
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from magshell.output.critical import write_mode
+from magshell.output.files import csv_line, write_atomically
+from magshell.output.rendering import RenderingUnavailable
+from magshell.output.shape import draw_shape
+from magshell.solver.path import Step
+
+if TYPE_CHECKING:
+    from magshell.solver.buckling import Buckling, BucklingMode
+
+HEADING = ("number", "load_factor", "B1", "B2", "B3", "mode")
+# Largest displacement of a mode in its picture, in sizes of the body.
+SHOWN = 0.15
+
+
+def write_buckling(buckling: Buckling, directory: str | os.PathLike[str]) -> list[pathlib.Path | str]:
+    """Write the multipliers, and each mode as a VTU file and a picture.
+
+    Parameters
+    ----------
+    buckling : Buckling
+    directory : path
+        Those of an earlier run are replaced.
+
+    Returns
+    -------
+    list of pathlib.Path or str
+        The pictures; a sentence in place of one that this machine cannot draw.
+
+    Raises
+    ------
+    OSError
+        The disk refuses; the message names the file.
+    """
+    folder = pathlib.Path(directory)
+    for old in (folder / "buckling").glob("mode-[0-9][0-9]*.*"):
+        old.unlink(missing_ok=True)
+    rows, pictures = [csv_line(HEADING)], list[pathlib.Path | str]()
+    for mode in buckling.modes:
+        name = f"buckling/mode-{mode.number:02d}.vtu"
+        write_mode(folder / name, buckling.path.discretisation, mode)
+        numbers = [repr(float(value)) for value in (mode.load_factor, *mode.flux_density)]
+        rows.append(csv_line([str(mode.number), *numbers, name]))
+        try:
+            pictures.append(_draw(buckling, mode, (folder / name).with_suffix(".png")))
+        except RenderingUnavailable as unavailable:
+            pictures.append(str(unavailable))
+    write_atomically(folder / "buckling.csv", "".join(rows).encode())
+    return pictures
+
+
+def _draw(buckling: Buckling, mode: BucklingMode, file: pathlib.Path) -> pathlib.Path:
+    size = SHOWN * buckling.path.model.shell.mesh.size
+    shape = mode.state.moved(size * mode.mode, np.zeros_like(mode.state.alpha))
+    step = Step(
+        mode.number, mode.load_factor, shape, 0, 0.0, None, 0.0, mode.stage, mode.flux_density, np.zeros(0), None
+    )
+    draw_shape(dataclasses.replace(buckling.path, steps=[step]), file, color="u")
+    return file
