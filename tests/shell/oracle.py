@@ -305,6 +305,22 @@ def element(d, state, e, B):
     return strain, r, K
 
 
+def stress_energy(d, state, e, dS, dκ):
+    """½ ΔS : UᵀU + mu l² Δκ · κ of an element with fixed ΔS (points, levels, 3, 3) and Δκ (points, 2, 3)."""
+    material, rule = d.model.shell.material, d.model.shell.element.rule
+    modulus, total = material.shear_modulus * material.length_scale**2, 0.0
+    for p, (parent, weight) in enumerate(zip(*rule, strict=True)):
+        f, here = element_parts(d, state, e, parent, jets.variables(np.zeros(unknowns(d))))
+        point = point_of(d, here, e, weight, np.zeros(3))
+        R, κ = rotation(f["q"]), wryness_vectors(f)
+        levels = zip(deformation_gradients(f, point), point.volume, point.Q_inverse, dS[p], strict=True)
+        for F, volume, Q_inverse, extra in levels:
+            U, legs = R.T @ F, point.dual[:2] @ Q_inverse
+            total = total + volume * 0.5 * np.sum(extra * (U.T @ U))
+            total = total + volume * modulus * np.sum((dκ[p].T @ legs) * (κ.T @ legs))
+    return total
+
+
 def condensed(r, K):
     """Residual and tangent after the elimination of α, and (K_αα⁻¹ r_α, K_αα⁻¹ K_αv)."""
     v, a = slice(0, NODAL), slice(NODAL, None)

@@ -27,11 +27,16 @@ TOLERANCE = 1e-11
 def reference(d, state):
     """Strain energy, and residual and tangent on (node, component) pairs then α, of a one-element body."""
     energy, r, K = oracle.element(d, state, 0, FIELD)
+    return energy, in_order(d, r), in_order(d, K)
+
+
+def in_order(d, values):
+    """A vector or matrix of the element's variables in the order of the body's nodes."""
     where = (10 * d.mesh.elements[0][:, None] + np.arange(10)).ravel()
-    order = np.concatenate([where, np.arange(oracle.NODAL, len(r))])
-    r_sorted, K_sorted = np.zeros_like(r), np.zeros_like(K)
-    r_sorted[order], K_sorted[np.ix_(order, order)] = r, K
-    return energy, r_sorted, K_sorted
+    order = np.concatenate([where, np.arange(oracle.NODAL, len(values))])
+    result = np.zeros_like(values)
+    result[np.ix_(*[order] * values.ndim)] = values
+    return result
 
 
 @each_combination
@@ -72,7 +77,8 @@ def test_tangent_is_symmetric_exactly_for_conservative_laws(element, material, c
 def test_mixed_tangent_with_the_states_own_stresses_is_the_plain_one(element, material, coupling):
     d = free_body(SINGLES["curved"](), material, coupling, element=element)
     state = random_state(d, 4)
-    plain, right_side = dense(d, d.assemble(state, d.model.loading(1.0)).matrix), d.assemble(state, d.model.loading(1.0)).right_side
+    own = d.assemble(state, d.model.loading(1.0))
+    plain, right_side = dense(d, own.matrix), own.right_side
     mixed = d.assemble(state, d.model.loading(1.0), d.stresses_at(state))
     errors = scaled_error(dense(d, mixed.matrix), plain), scaled_error(mixed.right_side, right_side)
     assert max(errors) < 1e-13, f"tangent {errors[0]:.1e}, right side {errors[1]:.1e}"
@@ -88,6 +94,30 @@ def test_mixed_tangent_with_other_stresses_keeps_the_residual(coupling):
     assert np.array_equal(mixed.residual, residual)
     change = scaled_error(dense(d, mixed.matrix), K)
     assert change > 1e-3, f"the tangent changes by {change:.1e}: the given stresses are not used"
+
+
+@each_material
+@pytest.mark.parametrize("seed", [1, 2])
+def test_mixed_tangent_is_that_of_an_energy_with_the_given_stresses(material, seed):
+    """Without coupling modulus, where S is symmetric: of W + ½ (S' - S) : UᵀU + mu l² (κ' - κ) · κ with fixed S', κ'."""
+    d = free_body(SINGLES["curved"](), material._replace(coupling_modulus=0.0))
+    state = random_state(d, seed)
+    own, given = d.stresses_at(state), d.stresses_at(random_state(d, seed + 10))
+    dS, dκ = (given.S - own.S)[0], (given.kappa - own.kappa)[0]
+    assert scaled_error(dS.ravel(), dS.swapaxes(-1, -2).ravel()) < 1e-12
+    assembly = d.assemble(state, d.model.loading(1.0), given)
+    _, r, K = reference(d, state)
+    K_condensed = oracle.condensed(r, K + in_order(d, oracle.stress_energy(d, state, 0, dS, dκ).hessian))[1]
+    error = scaled_error(dense(d, assembly.matrix), K_condensed)
+    assert error < TOLERANCE, f"{error:.1e}"
+
+
+@each_material
+def test_mixed_tangent_is_symmetric_with_a_coupling_modulus_too(material):
+    d = free_body(SINGLES["curved"](), material, magnetics.DeformationGradientEnergy(0.8))
+    K = dense(d, d.assemble(random_state(d, 4), d.model.loading(1.0), d.stresses_at(random_state(d, 5))).matrix)
+    asymmetry = scaled_error(K, K.T)
+    assert asymmetry < 1e-12, f"asymmetry {asymmetry:.1e}"
 
 
 @each_material
@@ -123,7 +153,7 @@ def test_predicted_stresses_are_linear_in_the_increment(material):
     own = d.stresses_at(state)
     both = d.predicted_stresses(state, *(2.0 * a - 3.0 * b for a, b in zip(one, other, strict=True)))
     first, second = d.predicted_stresses(state, *one), d.predicted_stresses(state, *other)
-    for name in ("P", "kappa"):
+    for name in ("S", "kappa"):
         start, a, b = (getattr(stresses, name).ravel() for stresses in (own, first, second))
         error = scaled_error(getattr(both, name).ravel() - start, 2.0 * (a - start) - 3.0 * (b - start))
         assert error < 1e-13, f"{name}: {error:.1e}"
