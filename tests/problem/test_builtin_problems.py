@@ -64,6 +64,7 @@ PUBLISHED = [
     Published("slit-annulus", np.pi * (100 - 36), 0.03, 21e6, 0.0, [(0, 0, 0.8 * 4)], "A B"),
     Published("hemisphere", np.pi / 2 * 100 * np.cos(np.pi / 10), 0.04, 6.825e7, 0.3, [(200, 0, 0), (0, -200, 0)], "smaller_radial larger_radial"),
     Published("semi-cylinder", np.pi / 2 * 0.1016 * 0.3048, 3e-3, 2068.5e6, 0.3, [(0, 0, -1000)], "A"),
+    Published("hinged-roof", 0.1 * 2.54 * 0.254, 12.7e-3, 3102.75e6, 0.3, [(0, 0, -750)], "C"),
 ]  # fmt: skip
 
 
