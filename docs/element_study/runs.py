@@ -101,9 +101,9 @@ class Store:
 def _digest() -> str:
     """Of every source that a solve is made of."""
     package = ROOT / "src" / "magshell"
-    folders = ("shell", "materials", "magnetics", "mesh", "linalg", "solver", "problem/examples")
+    folders = ("shell", "materials", "magnetics", "mesh", "linalg", "solver", "loads", "problem/examples")
     files = [file for folder in folders for file in (package / folder).rglob("*") if file.suffix in (".py", ".toml")]
-    files += [package / name for name in ("assembly.py", "model.py", "supports.py", "loads.py")]
+    files += [file for file in package.glob("*.py") if file.name not in ("__main__.py", "cli.py", "progress.py")]
     digest = hashlib.sha256()
     for file in sorted(files):
         digest.update(file.read_bytes())
