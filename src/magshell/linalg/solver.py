@@ -126,10 +126,14 @@ class SuperLU(_Equilibrated):
             raise SingularMatrix(self.smallest_eigenpair()[1]) from None
 
     def negative_pivots(self) -> int | None:
-        """See `LinearSolver`. None where a row was exchanged, as signs then depend on the exchange."""
+        """See `LinearSolver`. Where rows were exchanged, of a factorisation that exchanges none."""
+        from scipy.sparse.linalg import splu
+
         factors = self._factors
         if not np.array_equal(factors.perm_r, factors.perm_c):
-            return None
+            factors = splu(self._matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=_SYMMETRIC)
+            if not np.array_equal(factors.perm_r, factors.perm_c):
+                return None
         return int(np.count_nonzero(factors.U.diagonal() < 0.0))
 
     def _solve_scaled(self, right_side: FloatArray) -> FloatArray:

@@ -102,6 +102,11 @@ class _Search:
         self.system, self.metric, self.report = system, metric, report
         self.before, self.after = before, after
         self.length = after.arc_length - before.arc_length
+        self.known: dict[float, Point] = {}
+
+    def seen(self, distance: float) -> Point:
+        """The point at a distance, which may be one that was solved before."""
+        return self.known[distance] if distance in self.known else self.point(distance)
 
     def point(self, distance: float) -> Point:
         """The point of the path at a distance from the first; its tangent is left factorised."""
@@ -116,11 +121,13 @@ class _Search:
             sphere = Sphere(self.metric, self.before.state.u, self.before.load_factor, *chord, self.metric.norm(*chord))
             solution = newton(self.system, trial, sphere, lambda *heard: self.report(trial, *heard))
             along = chord
-        return point_at(self.system, self.metric, solution, self.before.arc_length + distance, along)
+        point = point_at(self.system, self.metric, solution, self.before.arc_length + distance, along)
+        self.known[distance] = point
+        return point
 
     def turn(self) -> float | None:
         """Distance of the limit point."""
-        ends = (self.point(distance).slope.load for distance in (0.0, self.length))
+        ends = (self.seen(distance).slope.load for distance in (0.0, self.length))
         return self.root(lambda point: point.slope.load, 0.0, self.length) if np.prod([*ends]) < 0.0 else None
 
     def root(self, function: Callable[[Point], float], low: float, high: float) -> float:
@@ -131,7 +138,7 @@ class _Search:
 
     def bifurcations(self, low: float, high: float) -> Iterator[Found]:
         """Where the number of negative pivots changes between two distances."""
-        first, last = self.point(low).negative_pivots, self.point(high).negative_pivots
+        first, last = self.seen(low).negative_pivots, self.seen(high).negative_pivots
         if first is None or last is None or first == last:
             return
 
@@ -146,7 +153,8 @@ class _Search:
     def found(self, kind: str, distance: float) -> Found:
         """The critical point at a distance, with its mode."""
         margin = CLEARANCE * self.length
-        sides = self.point(distance - margin).negative_pivots, self.point(distance + margin).negative_pivots
+        near = max(distance - margin, 0.0), min(distance + margin, self.length)
+        sides = self.seen(near[0]).negative_pivots, self.seen(near[1]).negative_pivots
         point = self.point(distance)
         mode = self.system.discretisation.expand(self.system.linear_solver.smallest_eigenpair()[1])
         return Found(kind, point, normalised(mode), sides)

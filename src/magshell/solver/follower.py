@@ -11,7 +11,7 @@ from magshell.arrays import FloatArray
 from magshell.shell.state import State
 from magshell.solver.balance import Balance, balance
 from magshell.solver.constraints import Constraint, Metric, Sphere
-from magshell.solver.critical import CriticalPoint, locate, passed
+from magshell.solver.critical import LIMIT_POINT, CriticalPoint, locate, passed
 from magshell.solver.events import Iteration, Observer
 from magshell.solver.goals import Goal, LoadGoal, ProbeGoal, goals_of
 from magshell.solver.newton import Solution, StepFailure, System, Trial, newton
@@ -244,8 +244,12 @@ def _give_up(path: Path, stage: int, load_factor: float, reason: str) -> str:
     magnitude = float(np.linalg.norm(last.flux_density))
     field = f" ({1e3 * magnitude:.4g} mT)" if magnitude > 0.0 else ""
     where = f" of stage {stage + 1}" if len(path.model.stages) > 1 else ""
+    turns = [point for point in path.critical_points if point.kind == LIMIT_POINT and point.stage == stage]
+    turned = (
+        f" The load factor turned at {turns[-1].load_factor:.6g} (critical point {turns[-1].number})." if turns else ""
+    )
     return (
         f"stopped at load factor {last.load_factor:.6g}{where}{field}: after {path.cuts} cut{'s' * (path.cuts != 1)} "
-        f"the step to {load_factor:.6g} still fails: {reason}. Likely causes: a mesh too coarse for the local bending, "
+        f"the step to {load_factor:.6g} still fails: {reason}.{turned} Likely causes: a mesh too coarse for the local bending, "
         "a path that bends too sharply, or a unit slip; `magshell check` shows the magnitudes"
     )

@@ -45,8 +45,10 @@ class Settings:
                 raise InputError(f"solver: {entry.name} is {value}; it must be positive and finite")
         if self.tolerance >= 1e-2:
             raise InputError(f"solver: tolerance is {self.tolerance:g}; a result needs less than 1e-2")
-        if not self.smallest_step <= self.first_step <= self.largest_step <= 1.0:
+        if not self.first_step <= self.largest_step <= 1.0:
             raise InputError(
-                f"solver: steps must satisfy smallest_step ({self.smallest_step:g}) <= first_step "
-                f"({self.first_step:g}) <= largest_step ({self.largest_step:g}) <= 1"
+                f"solver: steps must satisfy first_step ({self.first_step:g}) <= largest_step "
+                f"({self.largest_step:g}) <= 1"
             )
+        if self.smallest_step >= 1e-2:
+            raise InputError(f"solver: smallest_step is {self.smallest_step:g} body sizes; a path needs less than 1e-2")

@@ -59,6 +59,7 @@ def solve(model: Model, settings: Settings | None = None, observers: Sequence[Ob
         raise
     finally:
         path.cpu_seconds = time.process_time() - cpu
+        path.solves = linear_solver.factorisations
         for observer in observers:
             observer.finished(path)
     return path
