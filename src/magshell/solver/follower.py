@@ -250,6 +250,6 @@ def _give_up(path: Path, stage: int, load_factor: float, reason: str) -> str:
     )
     return (
         f"stopped at load factor {last.load_factor:.6g}{where}{field}: after {path.cuts} cut{'s' * (path.cuts != 1)} "
-        f"the step to {load_factor:.6g} still fails: {reason}.{turned} Likely causes: a mesh too coarse for the local bending, "
-        "a path that bends too sharply, or a unit slip; `magshell check` shows the magnitudes"
+        f"the step to {load_factor:.6g} still fails: {reason}.{turned} Likely causes: a mesh too coarse for the local "
+        "bending, a path that bends too sharply, or a unit slip; `magshell check` shows the magnitudes"
     )
