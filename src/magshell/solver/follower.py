@@ -111,7 +111,8 @@ class Follower:
             distance = self.metric.norm(trial.state.u - last.state.u, trial.load_factor - last.load_factor)
             point = self._solved(trial, constraint, goal, at_goal)
             if point is not None:
-                self.radius = max(self.radius, distance) * self._growth()
+                grown = distance * self._growth()
+                self.radius = max(self.radius, grown) if at_goal else grown
                 failures, steps = 0, steps + 1
                 if at_goal:
                     return
