@@ -89,7 +89,7 @@ def test_a_second_run_replaces_the_first(strip: str, tmp_path: Path) -> None:
 
 
 def test_not_solved(strip: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    Path(strip).write_text(STRIP + "[solver]\nmax_iterations = 1\nfirst_step = 0.1\nsmallest_step = 0.05\n")
+    Path(strip).write_text(STRIP + "[solver]\nmax_iterations = 1\nfirst_step = 0.1\nsmallest_step = 9e-3\n")
     out = tmp_path / "out"
     assert main(["run", strip, "--out", str(out)]) == 1
     shown = capsys.readouterr()

@@ -102,8 +102,9 @@ def test_path_converges(name: str, solved) -> None:
     assert worst.residual <= settings.tolerance, f"{name}: {worst.residual:.1e} at step {worst.number}"
     assert all(0 < step.iterations <= settings.max_iterations for step in path.steps[1:])
     kept = sum(step.iterations for step in path.steps)
-    assert kept <= path.solves, f"{name}: {kept} solves in the steps, {path.solves} in all"
-    assert (kept == path.solves) == (path.cuts == 0), f"{name}: {kept}, {path.solves}, {path.cuts} cuts"
+    assert kept < path.solves, f"{name}: {kept} solves in the steps, {path.solves} in all, one for the first direction"
+    if path.cuts == 0 and not path.critical_points:
+        assert path.solves <= kept + len(path.steps), f"{name}: {kept}, {path.solves}, at most one more per step"
 
 
 @every_problem
@@ -134,7 +135,9 @@ def test_what_unbalances_the_forces_is_the_residual_of_the_free_nodes(name: str,
     """Forces between elements cancel: all nodal residuals sum to zero, whatever the state."""
     path = solved(name)
     discretisation, step = path.discretisation, path.steps[-1]
-    residual = discretisation.assemble(step.state, discretisation.model.loading(step.load_factor), tangent=False).residual
+    residual = discretisation.assemble(
+        step.state, discretisation.model.loading(step.load_factor), tangent=False
+    ).residual
     nodal = discretisation.to_global(residual)[:, :3]
     off = np.linalg.norm(nodal.sum(axis=0)) / np.linalg.norm(nodal, axis=1).sum()
     assert off < len(nodal) * np.finfo(float).eps, f"{name}: {off:.1e}"

@@ -87,7 +87,9 @@ def test_heights_of_the_hollow_cross_are_free_of_where_it_is_held() -> None:
     mirrored = np.array([path.discretisation.mesh.node_at(point) for point in points[:, [1, 0, 2]]])
     apart = np.abs(u[mirrored][:, [1, 0, 2]] - u).max() / np.abs(u).max()
     assert apart < 1e-8, f"{apart:.1e}"
-    residual = path.discretisation.assemble(path.steps[-1].state, path.discretisation.model.loading(1.0), tangent=False).residual
+    residual = path.discretisation.assemble(
+        path.steps[-1].state, path.discretisation.model.loading(1.0), tangent=False
+    ).residual
     held = [path.model.probe_nodes[name] for name in ("A", "G")]
     others = np.abs(np.delete(residual[:, 2], held)).max()
     assert np.abs(residual[held, 2]).max() <= max(10.0 * others, 1e-12), f"{residual[held, 2]}, elsewhere {others:.1e}"

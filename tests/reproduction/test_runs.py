@@ -25,7 +25,7 @@ GOOD = check(parse(STRIP, "good"), "good")
 HOPELESS = check(
     parse(
         changed(STRIP, ('flux_density = [0, 0, "2 mT"]', 'flux_density = [0, 0, "20 T"]'))
-        + "[solver]\nmax_iterations = 1\nfirst_step = 0.5\nsmallest_step = 0.5\n",
+        + "[solver]\nmax_iterations = 1\nfirst_step = 0.5\nsmallest_step = 9e-3\n",
         "hopeless",
     ),
     "hopeless",

@@ -99,7 +99,7 @@ def test_mixed_tangent_with_other_stresses_keeps_the_residual(coupling):
 @each_material
 @pytest.mark.parametrize("seed", [1, 2])
 def test_mixed_tangent_is_that_of_an_energy_with_the_given_stresses(material, seed):
-    """Without coupling modulus, where S is symmetric: of W + ½ (S' - S) : UᵀU + mu l² (κ' - κ) · κ with fixed S', κ'."""
+    """S being symmetric (η = 0): of W + ½ (S' - S) : UᵀU + mu l² (κ' - κ) · κ with fixed S', κ'."""
     d = free_body(SINGLES["curved"](), material._replace(coupling_modulus=0.0))
     state = random_state(d, seed)
     own, given = d.stresses_at(state), d.stresses_at(random_state(d, seed + 10))

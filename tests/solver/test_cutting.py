@@ -11,7 +11,7 @@ from hypothesis import strategies as some
 
 import magshell as ms
 from magshell import Path, Settings, solve
-from magshell.solver import stepping
+from magshell.solver import follower
 from magshell.solver.newton import StepFailure, newton
 from solver.models import LENGTH, Record, arm, contents, last_correction, strip
 
@@ -39,7 +39,7 @@ def test_cut_step_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatch, failing
                 raise StepFailure("meant to")
             return solution
 
-        monkeypatch.setattr(stepping, "newton", failing_newton)
+        monkeypatch.setattr(follower, "newton", failing_newton)
         record = Record()
         result = solve(strip(), observers=[record])
         assert (record.cuts[0][1], len(record.steps[:failing])) == ("meant to", failing)

@@ -32,12 +32,15 @@ def failure(model: ms.Model, settings: Settings) -> tuple[SolveError, Record]:
     return error, record
 
 
-def test_absurd_field_fails_at_once() -> None:
-    """Steps of a third of the body are too long for a field that turns it about at a thousandth of its value."""
-    error, _ = failure(strip(field=(0, 0, 5.0)), Settings(first_step=0.3, smallest_step=0.3))
-    assert len(error.path.steps) == 1
-    assert error.path.solves < 10, f"{error.path.solves} solves"
-    for part in ("stopped at load factor 0:", "step to 0.0045", "element", "turned inside out", "unit slip"):
+def test_absurd_field_is_followed_as_far_as_it_goes() -> None:
+    """A slip of the unit by 10⁵: first steps turn elements inside out, and the message says what field was reached."""
+    error, record = failure(strip(field=(0, 0, 1e3)), Settings(smallest_step=9e-3))
+    assert error.path.solves < 120, f"{error.path.solves} solves"
+    assert record.cuts[0][0] == 0.01
+    assert "turned inside out" in record.cuts[0][1], record.cuts[0]
+    reached = 1e3 * np.linalg.norm(error.path.steps[-1].flux_density)
+    assert 100.0 < reached < 1000.0
+    for part in ("stopped at load factor 0.000", f"({reached:.4g} mT)", "still fails", record.cuts[-1][1], "unit slip"):
         assert part in error.reason, error.reason
 
 
@@ -57,7 +60,7 @@ def test_steps_before_the_failure_are_kept() -> None:
 
 def test_strip_cannot_be_squashed_to_nothing() -> None:
     supports = [ms.Clamp("left"), ms.Prescribe("right", "u", 1, -LENGTH)]
-    error, record = failure(strip(supports=supports, field=(0, 0, 0)), Settings(smallest_step=0.005))
+    error, record = failure(strip((2, 1), supports, field=(0, 0, 0)), Settings(smallest_step=0.005))
     reached = error.path.steps[-1].load_factor
     assert 0.1 < reached < 1.0, reached
     assert f"stopped at load factor {reached:.6g}" in error.reason, error.reason

@@ -27,15 +27,19 @@ def test_loose_tolerance() -> None:
 @pytest.mark.parametrize(
     "steps",
     [
-        {"first_step": 1e-7},
         {"first_step": 0.5, "largest_step": 0.1},
         {"largest_step": 1.5},
-        {"smallest_step": 0.1},
     ],
 )
 def test_steps_out_of_order(steps: dict[str, float]) -> None:
-    with pytest.raises(InputError, match=r"steps must satisfy smallest_step .* <= first_step .* <= largest_step"):
+    with pytest.raises(InputError, match=r"steps must satisfy first_step .* <= largest_step"):
         Settings(**steps)
+
+
+def test_smallest_step_is_a_length() -> None:
+    Settings(first_step=1e-7)
+    with pytest.raises(InputError, match=r"smallest_step is 0\.1 body sizes; a path needs less than 1e-2"):
+        Settings(smallest_step=0.1)
 
 
 def test_unknown_linear_solver_names_the_nearest() -> None:
