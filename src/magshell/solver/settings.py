@@ -31,7 +31,7 @@ class Settings:
 
     tolerance: float = 1e-9
     max_iterations: int = 8
-    target_iterations: int = 5
+    target_iterations: int = 4
     first_step: float = 0.01
     smallest_step: float = 1e-6
     largest_step: float = 1.0
