@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from magshell.problem.report import Report
+    from magshell.solver import Path
 
 SOLVED, NOT_SOLVED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
@@ -192,6 +193,7 @@ def _run(given: argparse.Namespace) -> int:
         u = path.probe(name).u[-1]
         noise = 1e-9 * max(map(abs, u))
         _say(console, f"{name}: u = ({', '.join(show(x if abs(x) > noise else 0.0, LENGTH) for x in u)})")
+    _say_unstable(console, path)
     for picture in draw_pictures(path, directory):
         _say(console, f"picture: {picture}" if isinstance(picture, pathlib.Path) else picture)
     _say(console, f"results: {directory} (history.csv, summary.json; shell.pvd opens in ParaView)")
@@ -324,6 +326,14 @@ def _say(console: Console, text: str, style: str | None = None) -> None:
 def _say_doubts(console: Console, report: Report) -> None:
     for doubt in report.warnings:
         _say(console, f"warning: {doubt}", style="yellow")
+
+
+def _say_unstable(console: Console, path: Path) -> None:
+    unstable = [step for step in path.steps if step.negative_pivots]
+    if unstable:
+        text = f"{len(unstable)} of {len(path.steps) - 1} steps are unstable, the first is step {unstable[0].number}: "
+        text += "a real shell leaves the path before it. critical.csv says where it turns or branches"
+        _say(console, f"warning: {text}", style="yellow")
 
 
 def _complain(text: str) -> None:

@@ -186,15 +186,21 @@ class Model:
             except InputError as error:
                 raise InputError(f"probe '{name}': {error}") from None
         put(self, "probe_nodes", MappingProxyType(nodes))
-        for stage in self.stages:
-            if stage.probe is not None and stage.probe not in nodes:
-                raise InputError(
-                    f"stage '{stage.name}': probe '{stage.probe}' is unknown. {suggest(stage.probe, nodes)}"
-                )
         put(self, "_ends", self._amounts_at_the_ends())
+        self._check_targets()
         check_supported(mesh, self.normals, self.constraints)
         self._check_the_micro_rotation_matters()
         self._check_something_loads()
+
+    def _check_targets(self) -> None:
+        for stage in self.stages:
+            if stage.probe is None or stage.component is None:
+                continue
+            where = f"stage '{stage.name}'"
+            if stage.probe not in self.probe_nodes:
+                raise InputError(f"{where}: probe '{stage.probe}' is unknown. {suggest(stage.probe, self.probe_nodes)}")
+            if self.constraints.fixed[self.probe_nodes[stage.probe], stage.component - 1]:
+                raise InputError(f"{where}: u{stage.component} of probe '{stage.probe}' is held by a support")
 
     def _check_the_micro_rotation_matters(self) -> None:
         if self.shell.material.coupling_modulus > 0.0:
