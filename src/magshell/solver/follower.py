@@ -177,7 +177,7 @@ class Follower:
             for observer in self.observers:
                 observer.cut(trial.load_factor, self.reason)
             return None
-        self.track.append(point)
+        self.track = [*self.track[-2:], point]
         self._keep(point, solution, self._balance(solution))
         for one in critical:
             self.path.critical_points.append(one)
