@@ -16,6 +16,7 @@ from magshell.problem import examples
 from magshell.problem.building import Problem, build
 from magshell.problem.reading import check, parse
 from problem.loaded import EVERY_LOAD
+from problem.test_staged_problems import STAGED
 
 WORDS = re.compile(r"[\w.+-]+|\S")
 NEW_WORDS = st.one_of(
@@ -46,7 +47,7 @@ NEW_WORDS = st.one_of(
     st.floats().map(repr),
     st.text(max_size=5),
 )
-TEXTS = st.sampled_from([LOADED, EVERY_LOAD, *map(examples.text, ("strip-10", "gripper", "pump", "thin-cross"))])
+TEXTS = st.sampled_from([LOADED, EVERY_LOAD, STAGED, *map(examples.text, ("strip-10", "gripper", "pump", "thin-cross"))])
 
 
 @st.composite

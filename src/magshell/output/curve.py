@@ -58,7 +58,7 @@ def curve_figure(path: Path) -> Figure:
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.12)
     axes = figure.subplots()
     field, x = abscissa(path)
-    unstable = np.array([step.negative_pivots != 0 for step in path.steps])
+    unstable = np.array([bool(step.negative_pivots) for step in path.steps])
     for label, values, style in sorted(_curves(path), key=lambda curve: -curve[1][-1]):
         axes.plot(x, 1e3 * values, label=label, markersize=5, markeredgecolor="white", markeredgewidth=0.6, **style)
         hollow = {"linestyle": "none", "marker": style["marker"], "color": style["color"], "markersize": 5}

@@ -22,7 +22,7 @@ GROWTH, CUT = 2.5, 0.35
 # Failures in a row after which the arc length is held instead.
 PATIENCE = 2
 # Steps that a path may take by arc length to its next goal.
-WANDERING = 400
+WANDERING = 1000
 # Largest angle between a step and the direction of the path at either end: beyond it the path has been left.
 SHARPEST = np.pi / 3
 # Largest distance of a solution from its trial state, in lengths of the step: beyond it another path may have been met.
@@ -117,8 +117,9 @@ class Follower:
                 if at_goal:
                     return
                 if self.by_arc and steps > WANDERING:
-                    self.reason = f"{WANDERING} steps by arc length do not lead to the next stop"
-                    break
+                    raise StepFailure(
+                        f"{_position(self.path)}: {WANDERING} steps by arc length have not led to the next stop"
+                    )
                 continue
             failures += 1
             self.by_arc |= failures == PATIENCE
@@ -129,7 +130,7 @@ class Follower:
 
     def _next(self, goal: Goal) -> tuple[Trial, Constraint | None, bool]:
         """The next trial state, what is held in its step, and whether the step leads to the goal."""
-        track, longest = self.track, self._longest()
+        track, longest = self.track, self._longest() if isinstance(goal, LoadGoal) else self.radius
         values = [goal.value(point) for point in track[-3:]]
         at = crossing(track, values, goal.slope(track[-1].slope), goal.wanted, 2.0 * longest)
         if at is not None and at <= 1.3 * longest:
@@ -240,17 +241,21 @@ class Follower:
         return float(np.clip(self.settings.target_iterations / max(self.path.steps[-1].iterations, 1), 0.4, GROWTH))
 
 
-def _give_up(path: Path, stage: int, load_factor: float, reason: str) -> str:
+def _position(path: Path) -> str:
     last = path.steps[-1]
     magnitude = float(np.linalg.norm(last.flux_density))
     field = f" ({1e3 * magnitude:.4g} mT)" if magnitude > 0.0 else ""
-    where = f" of stage {stage + 1}" if len(path.model.stages) > 1 else ""
+    where = f" of stage {last.stage + 1}" if len(path.model.stages) > 1 else ""
+    return f"stopped at load factor {last.load_factor:.6g}{where}{field}"
+
+
+def _give_up(path: Path, stage: int, load_factor: float, reason: str) -> str:
     turns = [point for point in path.critical_points if point.kind == LIMIT_POINT and point.stage == stage]
     turned = (
         f" The load factor turned at {turns[-1].load_factor:.6g} (critical point {turns[-1].number})." if turns else ""
     )
     return (
-        f"stopped at load factor {last.load_factor:.6g}{where}{field}: after {path.cuts} cut{'s' * (path.cuts != 1)} "
+        f"{_position(path)}: after {path.cuts} cut{'s' * (path.cuts != 1)} "
         f"the step to {load_factor:.6g} still fails: {reason}.{turned} Likely causes: a mesh too coarse for the local "
         "bending, a path that bends too sharply, or a unit slip; `magshell check` shows the magnitudes"
     )
