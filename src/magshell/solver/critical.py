@@ -18,6 +18,8 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
+from magshell.assembly import Assembly
+from magshell.linalg import SingularMatrix
 from magshell.shell.state import State
 from magshell.solver.constraints import Metric, Sphere
 from magshell.solver.newton import Solution, System, Trial, newton
@@ -91,7 +93,7 @@ def locate(system: System, metric: Metric, before: Point, after: Point, report: 
         return
     margin = CLEARANCE * search.length
     yield from search.bifurcations(0.0, max(turn - margin, 0.0))
-    yield search.found(LIMIT_POINT, turn)
+    yield search.limit_point(turn)
     yield from search.bifurcations(min(turn + margin, search.length), search.length)
 
 
@@ -141,23 +143,73 @@ class _Search:
         first, last = self.seen(low).negative_pivots, self.seen(high).negative_pivots
         if first is None or last is None or first == last:
             return
+        below, above, at = self.singular(low, high)
+        yield self.between(below, above, at)
+        yield from self.bifurcations(above, high)
 
-        def least_eigenvalue(point: Point) -> float:
-            size = abs(self.system.linear_solver.smallest_eigenpair()[0])
-            return size if point.negative_pivots == first else -size
+    def singular(self, low: float, high: float) -> tuple[float, float, float]:
+        """Two distances on either side of the first bifurcation, a clearance from it, and its own.
 
-        at = self.root(least_eigenvalue, low, high)
-        yield self.found(BIFURCATION, at)
-        yield from self.bifurcations(min(at + CLEARANCE * self.length, high), high)
+        No state is solved at it: there the equations have no single solution, and Newton's method follows round-off.
+        """
+        clearance = CLEARANCE * self.length
+        first = self.seen(low).negative_pivots
+        values = {distance: self.least_eigenvalue(distance, first) for distance in (low, high)}
+        width = np.inf
+        while high - low > 2.5 * clearance:
+            guess = _root(values, low, high) if high - low < 0.5 * width else 0.5 * (low + high)
+            guess, width = min(max(guess, low + clearance), high - clearance), high - low
+            for distance in (guess - clearance, guess + clearance):
+                if low < distance < high:
+                    values[distance] = self.least_eigenvalue(distance, first)
+                    low, high = (distance, high) if values[distance] > 0.0 else (low, distance)
+        return low, high, _root(values, low, high)
 
-    def found(self, kind: str, distance: float) -> Found:
-        """The critical point at a distance, with its mode."""
+    def least_eigenvalue(self, distance: float, first: int | None) -> float:
+        """Of the tangent at a distance; positive where it has the first number of negative pivots."""
+        pivots = self.point(distance).negative_pivots
+        size = abs(self.system.linear_solver.smallest_eigenpair()[0])
+        return size if pivots == first else -size
+
+    def between(self, below: float, above: float, at: float) -> Found:
+        """The bifurcation at a distance, on the path through the points on either side of it, with its mode."""
+        first, last, system = self.seen(below), self.seen(above), self.system
+        trial = trial_at(system.discretisation, system.course, [last, first], at - below)
+        point = first._replace(arc_length=self.before.arc_length + at, load_factor=trial.load_factor, state=trial.state)
+        return Found(
+            BIFURCATION, point, self.mode(system.assemble(trial)), (first.negative_pivots, last.negative_pivots)
+        )
+
+    def mode(self, assembly: Assembly) -> FloatArray:
+        """The direction in which a tangent does least."""
+        assert assembly.matrix is not None
+        try:
+            self.system.linear_solver.factorise(assembly.matrix)
+            direction = self.system.linear_solver.smallest_eigenpair()[1]
+        except SingularMatrix as singular:
+            direction = singular.null_vector
+        return normalised(self.system.discretisation.expand(direction))
+
+    def limit_point(self, distance: float) -> Found:
+        """The limit point at a distance, with its mode."""
         margin = CLEARANCE * self.length
         near = max(distance - margin, 0.0), min(distance + margin, self.length)
         sides = self.seen(near[0]).negative_pivots, self.seen(near[1]).negative_pivots
         point = self.point(distance)
         mode = self.system.discretisation.expand(self.system.linear_solver.smallest_eigenpair()[1])
-        return Found(kind, point, normalised(mode), sides)
+        return Found(LIMIT_POINT, point, normalised(mode), sides)
+
+
+def _root(values: dict[float, float], low: float, high: float) -> float:
+    """Where a function vanishes between two distances: by inverse interpolation of its nearest values."""
+    nearest = sorted(values, key=lambda distance: abs(values[distance]))[:4]
+    found = 0.0
+    for one in nearest:
+        others = [other for other in nearest if other != one]
+        found += one * float(np.prod([values[other] / (values[other] - values[one]) for other in others]))
+    if low < found < high:
+        return found
+    return low + (high - low) * values[low] / (values[low] - values[high])
 
 
 def normalised(mode: FloatArray) -> FloatArray:
