@@ -154,7 +154,9 @@ def test_probe_that_a_support_holds() -> None:
 def test_a_path_that_wanders_ends_with_a_reason(monkeypatch: pytest.MonkeyPatch, stage: Stage) -> None:
     monkeypatch.setattr(follower, "WANDERING", 8)
     record = Record()
-    with pytest.raises(SolveError, match="load factor .*: 8 steps by arc length have not led to the next stop") as caught:
+    with pytest.raises(
+        SolveError, match=r"load factor .*: 8 steps by arc length have not led to the next stop"
+    ) as caught:
         solve(arch([stage]), observers=[record])
     path = caught.value.path
     assert path.steps == record.steps
