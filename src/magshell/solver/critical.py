@@ -26,8 +26,8 @@ from magshell.solver.newton import Solution, System, Trial, newton
 from magshell.solver.track import Point, point_at, trial_at
 
 LIMIT_POINT, BIFURCATION = "limit point", "bifurcation"
-# Of a step: accuracy of a critical point along it, and the distance kept from one in search of the next.
-ACCURACY, CLEARANCE = 1e-6, 1e-3
+# Of a step: accuracy of a limit point along it, and the distances from which a bifurcation is approached.
+ACCURACY, COARSE_CLEARANCE, CLEARANCE = 1e-6, 1e-2, 1e-3
 
 Report = Callable[[Trial, int, str, float], None]
 
@@ -152,17 +152,17 @@ class _Search:
 
         No state is solved at it: there the equations have no single solution, and Newton's method follows round-off.
         """
-        clearance = CLEARANCE * self.length
         first = self.seen(low).negative_pivots
         values = {distance: self.least_eigenvalue(distance, first) for distance in (low, high)}
-        width = np.inf
-        while high - low > 2.5 * clearance:
-            guess = _root(values, low, high) if high - low < 0.5 * width else 0.5 * (low + high)
-            guess, width = min(max(guess, low + clearance), high - clearance), high - low
-            for distance in (guess - clearance, guess + clearance):
-                if low < distance < high:
-                    values[distance] = self.least_eigenvalue(distance, first)
-                    low, high = (distance, high) if values[distance] > 0.0 else (low, distance)
+        for clearance in (COARSE_CLEARANCE * self.length, CLEARANCE * self.length):
+            width = np.inf
+            while high - low > 2.5 * clearance:
+                guess = _root(values, low, high) if high - low < 0.5 * width else 0.5 * (low + high)
+                guess, width = min(max(guess, low + clearance), high - clearance), high - low
+                for distance in (guess - clearance, guess + clearance):
+                    if low < distance < high:
+                        values[distance] = self.least_eigenvalue(distance, first)
+                        low, high = (distance, high) if values[distance] > 0.0 else (low, distance)
         return low, high, _root(values, low, high)
 
     def least_eigenvalue(self, distance: float, first: int | None) -> float:
@@ -202,7 +202,7 @@ class _Search:
 
 def _root(values: dict[float, float], low: float, high: float) -> float:
     """Where a function vanishes between two distances: by inverse interpolation of its nearest values."""
-    nearest = sorted(values, key=lambda distance: abs(values[distance]))[:4]
+    nearest = sorted(values, key=lambda distance: abs(distance - 0.5 * (low + high)))[:4]
     found = 0.0
     for one in nearest:
         others = [other for other in nearest if other != one]

@@ -23,6 +23,8 @@ from magshell.solver.constraints import Constraint, NoRoot
 from magshell.solver.settings import Settings
 
 HALVINGS = 4
+# Residual below which an iteration that no longer converges has met round-off (very thin shells on graded meshes).
+ROUND_OFF = 1e-5
 # An increment of so many body lengths or radians says that the tangent is singular to round-off.
 ABSURD = 1e8
 
@@ -113,7 +115,7 @@ def newton(
         report(len(residuals) - 1, kind, residual)
         if not np.isfinite(residual):
             raise StepFailure("the residual is not finite")
-        if residual <= settings.tolerance:
+        if residual <= settings.tolerance or _stalled(residuals):
             return Solution(trial, assembly, residuals, increment)
         if len(residuals) > settings.max_iterations:
             raise StepFailure(
@@ -148,6 +150,11 @@ def newton(
             except InvertedElement as inverted:
                 if halving == HALVINGS:
                     raise StepFailure(_inverted(inverted)) from None
+
+
+def _stalled(residuals: list[float]) -> bool:
+    """Whether round-off has stopped the iteration, which converges quadratically until there."""
+    return len(residuals) > 2 and max(residuals[-3:]) < ROUND_OFF and residuals[-1] > 0.1 * residuals[-3]
 
 
 def factorise(system: System, assembly: Assembly) -> None:
