@@ -47,7 +47,8 @@ NEW_WORDS = st.one_of(
     st.floats().map(repr),
     st.text(max_size=5),
 )
-TEXTS = st.sampled_from([LOADED, EVERY_LOAD, STAGED, *map(examples.text, ("strip-10", "gripper", "pump", "thin-cross"))])
+EXAMPLES = map(examples.text, ("strip-10", "gripper", "pump", "thin-cross"))
+TEXTS = st.sampled_from([LOADED, EVERY_LOAD, STAGED, *EXAMPLES])
 
 
 @st.composite

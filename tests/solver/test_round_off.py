@@ -15,7 +15,7 @@ YOUNG, WIDTH, THICKNESS, LOAD = 21e6, 0.2, 5e-4, 3.0
 
 def graded():
     """A strip of length 1 with elements that get narrower towards its sides."""
-    mesh = ms.mesh.rectangle(1.0, WIDTH, (4, 12))
+    mesh = ms.mesh.rectangle(1.0, WIDTH, (8, 12))
     points, corners = mesh.points.copy(), mesh.elements[:, :4]
     side = 2.0 * points[:, 1] / WIDTH - 1.0
     y = 0.5 * WIDTH * (1.0 + np.sign(side) * (1.0 - np.clip(1.0 - np.abs(side), 0.0, 1.0) ** 2))
