@@ -27,7 +27,7 @@ from magshell.solver.track import Point, point_at, trial_at
 
 LIMIT_POINT, BIFURCATION = "limit point", "bifurcation"
 # Of a step: accuracy of a limit point along it, and the distances from which a bifurcation is approached.
-ACCURACY, COARSE_CLEARANCE, CLEARANCE = 1e-6, 1e-2, 1e-3
+ACCURACY, COARSE_CLEARANCE, CLEARANCE = 1e-6, 1e-2, 1e-4
 
 Report = Callable[[Trial, int, str, float], None]
 
@@ -111,21 +111,24 @@ class _Search:
         return self.known[distance] if distance in self.known else self.point(distance)
 
     def point(self, distance: float) -> Point:
-        """The point of the path at a distance from the first; its tangent is left factorised."""
-        trial: Trial
-        if distance <= 0.0:
-            state = self.before.state
-            trial = Trial(state, self.before.load_factor, self.system.discretisation.stresses_at(state))
-            solution, along = Solution(trial, self.system.assemble(trial), [0.0], None), self.before.slope.direction
-        else:
-            trial = trial_at(self.system.discretisation, self.system.course, [self.after, self.before], distance)
-            chord = trial.state.u - self.before.state.u, trial.load_factor - self.before.load_factor
-            sphere = Sphere(self.metric, self.before.state.u, self.before.load_factor, *chord, self.metric.norm(*chord))
-            solution = newton(self.system, trial, sphere, lambda *heard: self.report(trial, *heard))
-            along = chord
-        point = point_at(self.system, self.metric, solution, self.before.arc_length + distance, along)
+        """The point of the path at a distance from the first; its tangent, of its own stresses, is left factorised."""
+        system, before = self.system, self.before
+        state, load_factor, along = before.state, before.load_factor, before.slope.direction
+        if distance > 0.0:
+            trial = trial_at(system.discretisation, system.course, [self.after, before], distance)
+            along = trial.state.u - before.state.u, trial.load_factor - before.load_factor
+            sphere = Sphere(self.metric, before.state.u, before.load_factor, *along, self.metric.norm(*along))
+            found = newton(system, trial, sphere, lambda *heard: self.report(trial, *heard)).trial
+            state, load_factor = found.state, found.load_factor
+        own = self.own(state, load_factor)
+        solution = Solution(own, system.assemble(own), [0.0], None)
+        point = point_at(system, self.metric, solution, before.arc_length + distance, along)
         self.known[distance] = point
         return point
+
+    def own(self, state: State, load_factor: float) -> Trial:
+        """A state with its own stresses: those that a step predicted would move the zero of an eigenvalue."""
+        return Trial(state, load_factor, self.system.discretisation.stresses_at(state))
 
     def turn(self) -> float | None:
         """Distance of the limit point."""
@@ -176,9 +179,8 @@ class _Search:
         first, last, system = self.seen(below), self.seen(above), self.system
         trial = trial_at(system.discretisation, system.course, [last, first], at - below)
         point = first._replace(arc_length=self.before.arc_length + at, load_factor=trial.load_factor, state=trial.state)
-        return Found(
-            BIFURCATION, point, self.mode(system.assemble(trial)), (first.negative_pivots, last.negative_pivots)
-        )
+        mode = self.mode(system.assemble(self.own(trial.state, trial.load_factor)))
+        return Found(BIFURCATION, point, mode, (first.negative_pivots, last.negative_pivots))
 
     def mode(self, assembly: Assembly) -> FloatArray:
         """The direction in which a tangent does least."""
