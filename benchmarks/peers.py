@@ -1,14 +1,14 @@
 """magshell against other codes on two published shell problems, to full load, in one run.
 
-    python benchmarks/peers.py [--problem hemisphere annulus] [--limit]
+    python benchmarks/peers.py [--problem hemisphere annulus]
 
 Peers are an extra: pip install 'magshell[peers]'. One that is missing is named and left out. Every code runs by itself
 in a process of one thread and counts the CPU time of its solve: not its imports, its mesh or the compilation of its
 kernels. An iteration is one factorisation and solve. magshell runs with its default settings and step control; the
 others have none, and of several numbers of equal load steps the one with the fewest iterations is shown.
 
-With `--limit`, instead, magshell on finer meshes and NGSolve of higher order: what they tend to is the limit beside
-which errors are measured, since the table's own four-node elements are some tenths of a per cent off.
+Errors are those of the displacements at the full load, the larger of two: beside the source's table, whose own
+four-node elements are some tenths of a per cent off, and beside the limit of fine meshes (`peers_limit.py`).
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ CODES = {
     "NGSolve": ("ngsolve", "peers_ngsolve.py", [["2"]]),
 }  # fmt: skip
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NGS_NUM_THREADS", "NUMBA_NUM_THREADS")
-HEADER = "code             element                            problem     unknowns steps  iter.   CPU s   table   limit"
+HEADER = f"{'code':16s} {'element':34s} {'problem':11s} unknowns steps  iter.   CPU s   table   limit"
 
 
 def answered(script: str, arguments: list[str]) -> Answer:
@@ -78,26 +78,11 @@ def compare(problems: list[str]) -> None:
                     ours = answer.seconds
 
 
-def limits(problems: list[str]) -> None:
-    """Displacements at the full load on finer and finer meshes."""
-    for name in problems:
-        for script, variants in (
-            ("peers_magshell.py", [[name, "1"], [name, "1.5"], [name, "2"], [name, "3"]]),
-            ("peers_ngsolve.py", [["2", name], ["3", name], ["4", name]]),
-        ):
-            for variant in variants:
-                answer = answered(script, variant)
-                values = "  ".join(f"{key} {value:.4f}" for key, value in answer.values.items()) or answer.reason
-                print(f"{answer.code:16s} {answer.element:24s} {answer.unknowns:7d} unknowns  {values}", flush=True)
-
-
 def main() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--problem", nargs="+", default=list(PROBLEMS), choices=list(PROBLEMS))
-    parser.add_argument("--limit", action="store_true")
-    arguments = parser.parse_args()
-    (limits if arguments.limit else compare)(arguments.problem)
+    compare(parser.parse_args().problem)
 
 
 if __name__ == "__main__":

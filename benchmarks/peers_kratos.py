@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from importlib import metadata
 
 import KratosMultiphysics as km
 import KratosMultiphysics.StructuralMechanicsApplication as sma
@@ -105,7 +106,7 @@ def attempt(element: str, name: str, steps: int) -> Answer:
     for number, node in enumerate(forces):
         part.CreateNewCondition("PointLoadCondition3D1N", number + 1, [node], part.GetProperties()[1])
     newton = strategy(part)
-    answer = Answer(f"Kratos {km.KratosGlobals.Kernel.Version().split('-')[0]}", ELEMENTS[element], name, steps=steps)
+    answer = Answer(f"Kratos {metadata.version('KratosMultiphysics')}", ELEMENTS[element], name, steps=steps)
     start = time.process_time()
     for step in range(1, steps + 1):
         part.ProcessInfo[km.STEP] = step

@@ -8,10 +8,13 @@ has jumps of its normals on the edges, which the moments m^αβ, whose normal co
 
     Σ_T ∫_T n:E + m:K - ½ n:C⁻¹n - ½ m:D⁻¹m  -  ∫_∂T m_νν l (θ - α)  -  load · u   stationary.
 
+Naghdi's shell, for the limit of fine meshes, has a director that leaves the normal by the shear γ (H(curl)): K less the
+symmetric derivative of γ, θ less its component across the edge, and the energy ½ h G γ·γ.
+
 n, m: membrane forces and moments times √A; α: rotation of the edge from its reference normal, which makes m
 continuous, so that n and m are eliminated element by element; θ: angle of the element's normal from that reference,
-which is perpendicular to the edge and, for the branch of the angle only, taken from the last load step; l: length across
-the edge per parameter.
+which is perpendicular to the edge and, for the branch of the angle only, taken from the last load step; l: length
+across the edge per parameter.
 """
 
 from __future__ import annotations
@@ -84,30 +87,46 @@ def undeformed(name: str) -> Surface:
 
 
 class Shell:
-    """The equations of a problem."""
+    """The equations of a problem: Koiter's shell, or with `shear` Naghdi's.
 
-    def __init__(self, name: str, order: int, refinement: int = 1, membrane: str = "regge") -> None:
-        self.name, self.problem, self.order = name, PROBLEMS[name], order
-        across_s, across_t = (refinement * count for count in self.problem.elements)
-        self.mesh = MakeStructured2DMesh(quads=True, nx=across_s, ny=across_t)
+    `divisions` are those of s, from 0 to 1, and the number of those of t; by default the problem's.
+    """
+
+    def __init__(
+        self, name: str, order: int, divisions: tuple[np.ndarray, int] | None = None, shear: bool = False
+    ) -> None:
+        self.name, self.problem, self.shear = name, PROBLEMS[name], shear
+        s, n_t = divisions or (np.linspace(0, 1, self.problem.elements[0] + 1), self.problem.elements[1])
+        n_s = len(s) - 1
+        self.mesh = MakeStructured2DMesh(
+            quads=True, nx=n_s, ny=n_t, mapping=lambda x, y: (float(np.interp(x * n_s, np.arange(n_s + 1), s)), y)
+        )
         held, angle = self._held()
         fields = [ng.H1(self.mesh, order=order, dirichlet=held[c]) for c in range(3)]
-        moments = ng.HDivDiv(self.mesh, order=order - 1, discontinuous=True)
-        forces = {
-            "regge": lambda: ng.HCurlCurl(self.mesh, order=order - 1, discontinuous=True),
-            "l2": lambda: ng.L2(self.mesh, order=order - 1) ** 3,
-        }[membrane]()
-        angles = ng.NormalFacetFESpace(self.mesh, order=order - 1, dirichlet=angle)
-        self.membrane = membrane
-        self.space = ng.FESpace([*fields, moments, forces, angles])
+        spaces = [
+            *fields,
+            ng.HDivDiv(self.mesh, order=order - 1, discontinuous=True),
+            ng.HCurlCurl(self.mesh, order=order - 1, discontinuous=True),
+            ng.NormalFacetFESpace(self.mesh, order=order - 1, dirichlet=angle),
+        ]
+        if shear:
+            spaces.append(ng.HCurl(self.mesh, order=order - 1, dirichlet="bottom" if name == "annulus" else ""))
+        self.space = ng.FESpace(spaces)
         if name == "hemisphere":
             self._pin()
         self.state = ng.GridFunction(self.space)
-        self.reference = ng.GridFunction(ng.H1(self.mesh, order=order) ** 3)
         self.X = undeformed(name)
-        self.reference.Set(self.X.n)
+        self.reference = ng.GridFunction(ng.FESpace(fields))
+        self.held_normals = None
+        self.reset()
+        self.held_normals = self.reference.vec.Copy()
         self.load_factor = ng.Parameter(0.0)
         self.form = self._form()
+
+    def reset(self) -> None:
+        """No deformation."""
+        self.state.vec[:] = 0.0
+        self._refer(self.X)
 
     def _held(self) -> tuple[list[str], str]:
         """Edges on which each component of u, and the edge's rotation, are held."""
@@ -139,10 +158,9 @@ class Shell:
 
     def _form(self) -> ng.BilinearForm:
         """First variation; NGSolve differentiates it once more."""
-        *u, m, n, alpha = self.space.TrialFunction()
-        *v, dm, dn, dalpha = self.space.TestFunction()
-        if self.membrane == "l2":
-            n, dn = (Vector((f[0], f[1], f[1], f[2]), dims=(2, 2)) for f in (n, dn))
+        trial, test = self.space.TrialFunction(), self.space.TestFunction()
+        u, (m, n, alpha) = trial[:3], trial[3:6]
+        v, (dm, dn, dalpha) = test[:3], test[3:6]
         X, x, problem = self.X, self._surface(u), self.problem
         metric = X.metric()
         stretch = problem.youngs_modulus * problem.thickness
@@ -167,13 +185,14 @@ class Shell:
         length = x.along(tangent).Norm()
         t = x.along(tangent) / length
         outward = unit(across(x.along(normal), t))
-        wanted = across(self.reference, t)
+        last = Vector(tuple(self.reference.components))
+        wanted = across(last, t)
         reference = unit(wanted)
         theta = ng.atan2(reference * outward, reference * x.n)
         beside = (reference * x.n) * outward - (reference * outward) * x.n
         dtheta = sum((x.n * dx[c]) * (x.dual[c] * outward) for c in (0, 1))
         dt = tangent[0] * dx[0] + tangent[1] * dx[1]
-        dtheta -= (self.reference * t) / (wanted.Norm() * length) * (dt * beside)
+        dtheta -= (last * t) / (wanted.Norm() * length) * (dt * beside)
         height = across(X.along(normal), unit(X.along(tangent))).Norm()
         edges = (dm * normal * normal) * (theta - alpha * normal) + (m * normal * normal) * (dtheta - dalpha * normal)
 
@@ -184,7 +203,23 @@ class Shell:
         form += compiled(-height * edges) * ng.dx(element_boundary=True, bonus_intorder=BONUS)
         if self.name == "annulus":
             form += -self.load_factor * 4.0 * problem.load * v[2] * ng.ds("top")
+        if self.shear:
+            gamma, dgamma = trial[6], test[6]
+            bending = ng.InnerProduct(m, self._symmetric(dgamma)) + ng.InnerProduct(dm, self._symmetric(gamma))
+            form += compiled(-bending) * ng.dx(bonus_intorder=BONUS)
+            edges = (m * normal * normal) * (dgamma * normal) + (dm * normal * normal) * (gamma * normal)
+            form += compiled(edges) * ng.dx(element_boundary=True, bonus_intorder=BONUS)
+            modulus = stretch / (2 * (1 + problem.poissons_ratio))
+            shearing = (gamma[0] * X.dual[0] + gamma[1] * X.dual[1]) * (dgamma[0] * X.dual[0] + dgamma[1] * X.dual[1])
+            form += compiled(modulus * X.area * shearing) * ng.dx(bonus_intorder=BONUS)
         return form
+
+    def _symmetric(self, gamma: Vector) -> Vector:
+        """Symmetric covariant derivative on the undeformed surface."""
+        g, X = ng.Grad(gamma), self.X
+        e = [g[0, 0], 0.5 * (g[0, 1] + g[1, 0]), g[1, 1]]
+        e = [e[k] - (X.second[k] * X.dual[0]) * gamma[0] - (X.second[k] * X.dual[1]) * gamma[1] for k in range(3)]
+        return Vector((e[0], e[1], e[1], e[2]), dims=(2, 2))
 
     def step(self, load_factor: float, tolerance: float = TOLERANCE) -> int:
         """Newton's method at a load; the number of iterations, or 0 where it fails."""
@@ -207,7 +242,7 @@ class Shell:
             if not np.isfinite(size[0]) or size[1] > 1e3:
                 return 0
             if size[0] <= tolerance * size[1]:
-                self._refer()
+                self._refer(self._surface(state.components[:3]))
                 return iteration
         return 0
 
@@ -220,11 +255,14 @@ class Shell:
                 dead[self.space.Range(component).start + dof] = sign * load_factor * self.problem.load
         return dead
 
-    def _refer(self) -> None:
-        """Reference normals from the converged state; α, which is measured from them, anew."""
-        surface = self._surface(self.state.components[:3])
-        self.reference.Set(surface.n)
+    def _refer(self, surface: Surface) -> None:
+        """Reference normals of a surface, those of held edges as they were; α, which is measured from them, anew."""
+        for component, field in enumerate(self.reference.components):
+            field.Set(surface.n[component])
         self.state.components[5].vec[:] = 0.0
+        if self.held_normals is not None:
+            held = ~self.reference.space.FreeDofs()
+            self.reference.vec.data += ng.Projector(held, True) * (self.held_normals - self.reference.vec)
 
     def values(self) -> dict[str, float]:
         """The displacements that the table has."""
@@ -234,10 +272,11 @@ class Shell:
         return {k: sign * self.state.components[c](self.mesh(s, t)) for k, (s, t, c, sign) in at.items()}
 
 
-def attempt(order: int, name: str, steps: int) -> Answer:
+def attempt(shell: Shell, order: int, steps: int) -> Answer:
     """With equal load steps."""
-    shell = Shell(name, order)
-    answer = Answer(f"NGSolve {ng.__version__}", f"HHJ order {order}", name, sum(shell.space.FreeDofs(True)), steps)
+    unknowns = sum(shell.space.FreeDofs(True))
+    answer = Answer(f"NGSolve {ng.__version__}", f"HHJ order {order}", shell.name, unknowns, steps)
+    shell.reset()
     start = time.process_time()
     for step in range(1, steps + 1):
         solves = shell.step(step / steps)
@@ -253,7 +292,8 @@ def attempt(order: int, name: str, steps: int) -> Answer:
 def main() -> None:
     """Command line."""
     order, name = int(sys.argv[1]), sys.argv[2]
-    fewest_steps(lambda steps: attempt(order, name, steps)).print()
+    shell = Shell(name, order)
+    fewest_steps(lambda steps: attempt(shell, order, steps)).print()
 
 
 if __name__ == "__main__":
