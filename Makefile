@@ -24,6 +24,7 @@ figures: $(VENV)/installed
 verify: $(VENV)/installed
 	$(BIN)/python docs/make_element_study.py
 	$(BIN)/python docs/make_accuracy_study.py
+	$(BIN)/python docs/make_path_study.py
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)

@@ -56,6 +56,7 @@ EXAMPLES = [
     Example("h-shape", 15 * 16 // 4, 15 * 36 / 4, 0.9, 135, 3250, 94, -50, (2, 5, 15, 50), "A A' C D"),
     Example("hollow-cross", 6 * 36, 6 * 48, 0.41, 303, 7300, 102, -200, (10, 50, 100, 200), "A C E G"),
     Example("pump", 24 * 20, np.pi * R * 60, 0.9, 135, 3250, 94, 150, (20, 50, 100, 150), "A B C"),
+    Example("magnetic-arch", 12 * 2, 4 * 45 * np.radians(25), 0.8, 303, 7300, 143, -6, (1, 2, 3, 4, 5), "crown"),
     Example("gripper", 30 * 6, np.pi / 3 * R**2 * np.cos(np.pi / 12), 0.9, 135, 3250, 94, 10, (1, 2, 4, 6.8), "A B C D E"),
 ]  # fmt: skip
 PUBLISHED = [
