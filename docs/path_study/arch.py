@@ -223,7 +223,7 @@ def _shapes(axes: Axes, measured: dict[str, Any]) -> None:
     axes.plot(ends[:, 0], ends[:, 1] - 44.0, "o", markersize=9, color=PALE, markeredgecolor=GREY)
     axes.set_aspect("equal")
     axes.set_axis_off()
-    axes.set_ylim(-5.0, 3.0)
+    axes.set_ylim(-6.5, 3.0)
     axes.legend(loc="lower center", **LEGEND)
     axes.text(0.0, 2.4, "the arch from the side, to scale", ha="center", **TEXT)
     axes.set_xlabel("", **LABEL)

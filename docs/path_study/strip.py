@@ -185,7 +185,7 @@ def _picture(both: Sequence[Place], turned: dict[float, Sequence[Place]], critic
     fields = np.linspace(critical_field, 10.0, 300)
     shape = [elastica_deflection(math.pi**2 / 4.0 * field / critical_field) for field in fields]
     look = {"color": INK, "linewidth": 1.2, "linestyle": ":"}
-    near.plot(fields, shape, label="elastica of the same buckling field", **look)
+    near.plot(fields, shape, label="elastica", **look)
     near.plot(fields, -np.array(shape), **look)
     for place, (angle, places) in enumerate(turned.items()):
         for axes in (near, whole):

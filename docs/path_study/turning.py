@@ -132,8 +132,9 @@ def _around_panel(axes: Axes, measured: dict[str, Any]) -> None:
         colour = COLOURS[number]
         arrow = {"arrowstyle": "-|>,head_width=0.2,head_length=0.4", "color": colour, "linewidth": 1.4}
         axes.plot(*np.array(shape).T, color=colour, linewidth=3.0)
-        axes.annotate("", end + 2.4 * way, end, arrowprops=arrow)
-        axes.text(*(end + 3.6 * way), f"{at:.0f}°", color=colour, fontsize=12, ha="center", va="center")
+        axes.annotate("", end + 2.4 * way, end, arrowprops=arrow, annotation_clip=False)
+        beside = 3.6 * way if at < 150.0 else np.array([2.2, 0.0])
+        axes.text(*(end + beside), f"{at:.0f}°", color=colour, fontsize=12, ha="center", va="center")
     _side_view(axes, f"in a turning field of {1e3 * STRONG:g} mT; arrows: the field")
 
 
