@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as some
 from scipy.spatial.transform import Rotation
 
@@ -24,6 +24,7 @@ def test_stops_may_lie_within_the_largest_multiplier():
         UniformField((0.0, 0.0, 1.0), (0.6,), history=(0.5,))
 
 
+@settings(deadline=None)
 @given(angle=some.floats(-10.0, 10.0), vector=VECTORS, axis=VECTORS.filter(lambda axis: np.linalg.norm(axis) > 1e-3))
 def test_turned_about_the_axis(angle, vector, axis):
     field = UniformField(vector, rotation_axis=axis, rotation=(0.0,))

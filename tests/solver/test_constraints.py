@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as some
 
 from magshell.shell.state import State
@@ -29,6 +29,7 @@ def test_metric() -> None:
     assert METRIC.product((u, 1.0), (-u, 1.0)) == pytest.approx(LOAD_WEIGHT**2 - 6.25, rel=1e-14)
 
 
+@settings(deadline=None)
 @given(seed=some.integers(0, 1000), size=some.floats(1e-6, 0.3), load=some.floats(-2.0, 2.0))
 def test_sphere_is_met_on_the_side_of_the_trial(seed: int, size: float, load: float) -> None:
     """From a trial state on it: as far away as that, and ahead."""
@@ -68,6 +69,7 @@ def test_sphere_that_is_missed_is_met_as_closely_as_can_be() -> None:
         assert distance(other) > distance(best)
 
 
+@settings(deadline=None)
 @given(seed=some.integers(0, 1000), wanted=some.floats(-3.0, 3.0))
 def test_displacement_is_met(seed: int, wanted: float) -> None:
     start, ahead, increment, per_load = random_directions(seed)

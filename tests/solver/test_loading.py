@@ -26,6 +26,7 @@ def course(start: Amounts, end: Amounts) -> Course:
 AMOUNTS = some.builds(amounts, NUMBER, some.floats(-4.0, 4.0), NUMBER)
 
 
+@settings(deadline=None)
 @given(start=AMOUNTS, end=AMOUNTS, at=some.floats(-0.5, 1.5))
 def test_rate_is_the_derivative(start: Amounts, end: Amounts, at: float) -> None:
     one = course(start, end)
@@ -36,6 +37,7 @@ def test_rate_is_the_derivative(start: Amounts, end: Amounts, at: float) -> None
         assert np.abs((plus - minus) / (2.0 * step) - found).max() < 1e-5, name
 
 
+@settings(deadline=None)
 @given(start=AMOUNTS, end=AMOUNTS)
 def test_start_and_end(start: Amounts, end: Amounts) -> None:
     """A stage begins and ends with its amounts, and half-way it has their mean."""
@@ -47,6 +49,7 @@ def test_start_and_end(start: Amounts, end: Amounts) -> None:
     assert np.abs(one.at(0.5).loads - 0.5 * (start.loads + end.loads)).max() < 1e-15
 
 
+@settings(deadline=None)
 @given(field=some.floats(0.1, 2.0), start=some.floats(-4.0, 4.0), end=some.floats(-4.0, 4.0), at=some.floats(0.0, 1.0))
 def test_a_turning_field_keeps_magnitude_and_share_of_the_axis(
     field: float, start: float, end: float, at: float

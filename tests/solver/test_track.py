@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as some
 
 import magshell as ms
@@ -39,6 +39,7 @@ def sampled(
     return at(*arc_lengths), [float(np.polyval(polynomial, s)) for s in arc_lengths], slope
 
 
+@settings(deadline=None)
 @given(coefficients=COEFFICIENTS, gaps=GAPS, distance=some.floats(0.0, 3.0), points=some.integers(1, 3))
 def test_polynomials_are_continued_exactly(
     coefficients: list[float], gaps: tuple[float, float], distance: float, points: int
@@ -52,6 +53,7 @@ def test_polynomials_are_continued_exactly(
     assert found == pytest.approx(exact, abs=1e-14 * scale)
 
 
+@settings(deadline=None)
 @given(coefficients=COEFFICIENTS, gaps=GAPS, wanted=some.floats(-3.0, 3.0), longest=some.floats(0.1, 4.0))
 def test_crossing_is_the_first_root(
     coefficients: list[float], gaps: tuple[float, float], wanted: float, longest: float
