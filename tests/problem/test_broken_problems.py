@@ -81,7 +81,7 @@ BROKEN = [
     Broken("probe name with a comma", "tip =", '"ti,p" =', "probes.ti,p", ("name",)),
     # load
     Broken("nothing loads", '"2 mT"]\nstops = ["1 mT", "2 mT"]', "0]", "field", ("flux_density", "zero", "nothing loads")),
-    Broken("stop beyond the field", '"1 mT", "2 mT"', '"1 mT", "3 mT"', "field.stops[1]", ("beyond the end",)),
+    Broken("stop beyond the field", '"1 mT", "2 mT"', '"1 mT", "3 mT"', "field.stops[1]", ("beyond the largest field",)),
     Broken("stops unordered", '"1 mT", "2 mT"', '"2 mT", "1 mT"', "field.stops[1]", ("rise",)),
     Broken("stop at zero", '"1 mT", "2 mT"', '0, "2 mT"', "field.stops[0]", ("not positive",)),
     Broken("remanence twice", 'vector = ["143 mT", 0, 0]', 'vector = ["143 mT", 0, 0]\nmagnitude = "1 mT"', "remanence[0].vector", ("one or the other",)),
