@@ -20,6 +20,7 @@ from magshell.linalg import make_solver, nested_dissection
 from magshell.magnetics import laws
 from magshell.shell.elements import ELEMENTS
 from magshell.shell.state import State
+from magshell.solver.constraints import Constraint, Metric, ProbeValue, Sphere
 from magshell.solver.newton import System, Trial, newton
 from solver.models import arm, central_difference, equation_numbers, strip
 
@@ -43,12 +44,13 @@ CASES = [*(Case(law) for law in laws()), *(Case(laws()[0], element) for element 
 
 
 class Recording(Discretisation):
-    """Keeps the states at which residuals are made."""
+    """Keeps the states at which residuals are made, each once."""
 
     states: list[Any]
 
     def assemble(self, state, *arguments, **options):
-        self.states.append(state)
+        if not self.states or self.states[-1] is not state:
+            self.states.append(state)
         return super().assemble(state, *arguments, **options)
 
 
@@ -92,6 +94,54 @@ def test_plain_tangent_tends_to_the_same_orders(stretch: str) -> None:
     assert second[:2] == pytest.approx([1, 2], abs=0.01), f"{first}, {second}"
     assert first[2] < second[2] < 4.05, f"{first}, {second}"
     assert second[2] > 1.8 * 2, f"two iterations of order 1.8 at least: {first}, {second}"
+
+
+def constrained_errors(kind: str, ε: float) -> np.ndarray:
+    """As `errors`, with the load factor as an unknown: a displacement is held, or a sphere about the unloaded state.
+
+    The end is turned with the load factor as well, so that supports move while it is sought. The trial state is that at
+    load factor 0.5 with all displacements and rotations larger by ε.
+    """
+    begin = turned_half_way()
+    discretisation = Recording(TURNED_IN_A_FIELD, nested_dissection)
+    discretisation.states = []
+    increment, d_alpha = begin.increment_from(discretisation.undeformed())
+    state = begin.moved(ε * increment, ε * d_alpha)
+    stresses = discretisation.predicted_stresses(begin, ε * increment, ε * d_alpha)
+    tip, load_factor = TURNED_IN_A_FIELD.probe_nodes["tip"], 0.5 * (1 + ε)
+    held: Constraint = ProbeValue(tip, 2, float(state.u[tip, 2]))
+    if kind == "sphere":
+        metric = Metric(1.0 / (len(state.u) * discretisation.mesh.size**2))
+        held = Sphere(metric, 0 * state.u, 0.0, state.u, load_factor, metric.norm(state.u, load_factor))
+    settings = Settings(tolerance=SHARP, max_iterations=20)
+    system = System(discretisation, make_solver("superlu"), TURNED_IN_A_FIELD.course(0), settings)
+    solution = newton(system, Trial(state, load_factor, stresses), held, lambda *_: None).trial
+    if kind == "sphere":
+        assert metric.norm(solution.state.u, solution.load_factor) == pytest.approx(held.radius, rel=1e-14)
+    else:
+        assert solution.state.u[tip, 2] == pytest.approx(state.u[tip, 2], rel=1e-14)
+    return np.array([np.linalg.norm(one.u - solution.state.u) for one in discretisation.states[:3]])
+
+
+TURNED_IN_A_FIELD = strip(supports=[ms.Clamp("left"), ms.Prescribe("right", "omega", 2, -0.3)])
+
+
+@cache
+def turned_half_way() -> State:
+    """The state at load factor 0.5."""
+    model = TURNED_IN_A_FIELD
+    path = solve(
+        ms.Model(model.shell, model.supports, model.field, stages=[ms.Stage(stops=(0.5,))]), Settings(tolerance=SHARP)
+    )
+    return next(step.state for step in path.steps if step.load_factor == 0.5)
+
+
+@pytest.mark.parametrize("kind", ["displacement", "sphere"])
+def test_a_load_factor_that_is_sought_leaves_the_orders(kind: str) -> None:
+    """What is missing halves with ε, and extrapolated the orders are met."""
+    found = [constrained_errors(kind, ε) for ε in (0.005, 0.0025, 0.00125)]
+    first, second = (np.log2(large / small) for large, small in pairwise(found))
+    assert 2.0 * second - first == pytest.approx([1, 2, 4], abs=0.03), f"{first}, {second}"
 
 
 def test_mixed_tangent_is_farther_ahead_after_two_iterations() -> None:
