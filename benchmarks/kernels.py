@@ -59,9 +59,10 @@ def measure(element: ElementType) -> None:
     elements = len(discretisation.mesh.elements)
     state = discretisation.undeformed()
     stresses = discretisation.stresses_at(state)
-    discretisation.assemble(state, discretisation.model.loading(0.01), stresses)
-    residual = elements / best(lambda: discretisation.assemble(state, discretisation.model.loading(0.01), stresses, tangent=False))
-    tangent = elements / best(lambda: discretisation.assemble(state, discretisation.model.loading(0.01), stresses))
+    loading = discretisation.model.loading(0.01)
+    discretisation.assemble(state, loading, stresses)
+    residual = elements / best(lambda: discretisation.assemble(state, loading, stresses, tangent=False))
+    tangent = elements / best(lambda: discretisation.assemble(state, loading, stresses))
     share = operations(element) * tangent / dgemm_peak()
     print(
         f"{element.name:17s} {residual:9.0f} residual/s {tangent:9.0f} residual and tangent/s, "
