@@ -38,7 +38,7 @@ def study(runs: Runs) -> Findings:
     traces = {f"{n} × {m}": runs.of(f"pump {n}x{m}", lambda mesh=(n, m): pump(mesh)) for n, m in MESHES}
     rows = [_row(mesh, trace) for mesh, trace in traces.items()]
     header = ("Mesh", "Unknowns", "Turns at (mT)", "and at (mT)", "$\\lvert u_1\\rvert$ at B there (mm)",
-              "and there (mm)", "Negative pivots", "Steps", "Solves", "CPU (s)")  # fmt: skip
+              "and there (mm)", "Negative pivots", "Steps", "Solves")  # fmt: skip
     new = figure((13.0, 5.4))
     whole, near = new.subplots(1, 2, width_ratios=(1.0, 1.4))
     for place, (mesh, trace) in enumerate(traces.items()):
@@ -61,5 +61,5 @@ def _row(mesh: str, trace: Trace) -> list[str]:
     steps = sum(place.kind == "step" for place in trace.places) - 1
     return [
         mesh, str(trace.unknowns), *(f"{strength(place):.3f}" for place in turns),
-        *(f"{side(place):.3f}" for place in turns), pivots, str(steps), str(trace.solves), f"{trace.cpu:.0f}",
+        *(f"{side(place):.3f}" for place in turns), pivots, str(steps), str(trace.solves),
     ]  # fmt: skip

@@ -26,7 +26,7 @@ CLOSED = 1e-8
 def loop() -> ms.Path:
     """The built-in arch on a coarse mesh, field down, up and off."""
     source, file = problem.read("magnetic-arch")
-    mesh = file.mesh.model_copy(update={"elements": (8, 1)})
+    mesh = file.mesh.model_copy(update={"elements": (6, 1)})
     return ms.solve(build(file.model_copy(update={"mesh": mesh}), source).model)
 
 
