@@ -1,5 +1,5 @@
 # make demo: a virtual environment, the gripper solved, its picture.   make test: lint, types, tests.
-# make verify: the studies of docs/element.md and docs/how-accurate.md; more than half an hour, may be interrupted.
+# make verify: the studies behind the pages of docs; an hour or so, may be interrupted.
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
@@ -24,6 +24,7 @@ figures: $(VENV)/installed
 verify: $(VENV)/installed
 	$(BIN)/python docs/make_element_study.py
 	$(BIN)/python docs/make_accuracy_study.py
+	$(BIN)/python docs/make_published_study.py
 	$(BIN)/python docs/make_path_study.py
 
 $(VENV)/installed: pyproject.toml
