@@ -28,7 +28,7 @@ def main() -> None:
     ]  # fmt: skip
     draw_curves([(study.published, study.finest) for study in studies], "published-curves")
     draw_errors(
-        [(one.published, {variant: one.series(variant) for variant in one.found}) for one in studies],
+        [(one.published, {variant: one.errors(variant) for variant in one.found}) for one in studies],
         "published-errors",
     )
     write(studies, {"law": law_sentence(runs), "hinge": hinge_sentence(runs)})

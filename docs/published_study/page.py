@@ -8,43 +8,54 @@ from typing import NamedTuple
 
 import numpy as np
 from blocks import write_blocks
-from element_study.convergence import Series
 from element_study.tables import table
 
-from published_study.problems import CLASSICAL, LIMIT_POINT, MICROPOLAR, Divisions, Published, Variant
+from published_study.problems import CLASSICAL, MICROPOLAR, Divisions, Published, Variant
+from published_study.questions import apart
 from published_study.runs import Run
 
 PAGE = pathlib.Path(__file__).parents[1] / "published-shells.md"
 COMMAND = "docs/make_published_study.py"
-Found = Mapping[Variant, Mapping[Divisions, Run]]
+ORDER = 2
+"""Of the extrapolation to a limit: at least this is seen wherever there is one."""
+
+
+class Errors(NamedTuple):
+    """Unknowns of the meshes of a variant, and their largest distances from the limit over the rows of the table."""
+
+    unknowns: np.ndarray
+    values: np.ndarray
 
 
 class Study(NamedTuple):
     """A problem and all its runs."""
 
     published: Published
-    found: Found
+    found: Mapping[Variant, Mapping[Divisions, Run]]
 
     @property
     def finest(self) -> Run:
         """Of the classical shell."""
         return self.found[CLASSICAL][self.published.meshes[CLASSICAL][-1]]
 
-    @property
-    def usual(self) -> Run:
-        """Of the classical shell on the built-in mesh."""
-        return self.found[CLASSICAL][self.published.usual]
+    def limit(self, variant: Variant) -> dict[str, np.ndarray]:
+        """Differences from the table that the two finest meshes of a variant extrapolate to."""
+        coarse, fine = self.published.meshes[variant][-2:]
+        weight = 1.0 / ((fine[0] / coarse[0]) ** ORDER - 1.0)
+        near, far = (self.found[variant][mesh].differences(self.published) for mesh in (fine, coarse))
+        return {name: near[name] + weight * (near[name] - far[name]) for name in near}
 
-    def measure(self, run: Run) -> float:
-        """The number that stands for the accuracy of a mesh."""
-        return run.limits[0] if self.published.measure == LIMIT_POINT else run.values[self.published.measure][-1]
+    def errors(self, variant: Variant) -> Errors:
+        """Of the meshes that reach the end, from the limit of `quadratic` with as many parameters."""
+        limit = self.limit(CLASSICAL if variant.parameters == 7 else MICROPOLAR)
+        runs = [run for run in self.found[variant].values() if not run.reason]
+        distances = [{name: row - limit[name] for name, row in run.differences(self.published).items()} for run in runs]
+        return Errors(np.array([run.unknowns for run in runs]), np.array([largest(one) for one in distances]))
 
-    def series(self, variant: Variant) -> Series:
-        """That number on all meshes of a variant."""
-        runs = {mesh: run for mesh, run in self.found[variant].items() if not run.reason}
-        sizes = np.array([1.0 / mesh[0] for mesh in runs])
-        columns = zip(*((run.unknowns, self.measure(run), run.cpu) for run in runs.values()), strict=True)
-        return Series(variant.name, sizes, *(np.array(column, dtype=float) for column in columns))
+
+def largest(differences: Mapping[str, np.ndarray]) -> float:
+    """In size, over rows and columns."""
+    return max(float(np.abs(column).max()) for column in differences.values())
 
 
 def mesh_name(divisions: Divisions) -> str:
@@ -58,28 +69,32 @@ def percent(share: float) -> str:
 
 
 def claim_table(studies: Sequence[Study]) -> str:
-    """Largest distance from the table on the built-in and on the finest mesh."""
+    """Largest distance from the table on the built-in mesh, on the finest one and in the limit."""
     rows = []
-    for published, found in studies:
-        for divisions in dict.fromkeys([published.usual, published.meshes[CLASSICAL][-1]]):
-            run = found[CLASSICAL][divisions]
-            rows.append([
-                published.title if divisions == published.usual else "", mesh_name(divisions), str(run.unknowns),
-                str(run.solves), f"{run.cpu:.1f}", percent(run.worst(published)), _where(published, run),
-                percent(published.allowed),
-            ])  # fmt: skip
+    for study in studies:
+        published, runs = study.published, study.found[CLASSICAL]
+        usual, finest = published.usual, published.meshes[CLASSICAL][-1]
+        for divisions in dict.fromkeys([usual, finest]):
+            run = runs[divisions]
+            effort = (mesh_name(divisions), str(run.unknowns), str(run.solves), f"{run.cpu:.1f}")
+            distance = (percent(run.worst(published)), _where(published, run.differences(published)))
+            first = divisions == usual
+            rows.append(
+                [published.title if first else "", *effort, *distance, percent(published.allowed) if first else ""]
+            )
+        limit = study.limit(CLASSICAL)
+        rows.append(["", "limit", "", "", "", percent(largest(limit)), _where(published, limit), ""])
     head = ("Problem", "Mesh", "Unknowns", "Linear solves", "CPU (s)", "Largest distance", "At", "Claimed")
     return table(head, rows)
 
 
-def _where(published: Published, run: Run) -> str:
+def _where(published: Published, differences: Mapping[str, np.ndarray]) -> str:
     """The row farthest from the table."""
-    differences = run.differences(published)
     column = max(differences, key=lambda name: np.abs(differences[name]).max())
     at = int(np.abs(differences[column]).argmax())
-    led = published.columns[0].name if published.by_displacement else "load_ratio"
-    sign = "displacement" if published.by_displacement else "load"
-    return f"{sign} {published.data[led][at]:g}" + (f", `{column}`" if len(differences) > 1 else "")
+    if published.by_displacement:
+        return f"displacement {published.data[published.columns[0].name][at]:g}"
+    return f"load {published.data['load_ratio'][at]:g}" + (f", `{column}`" if len(differences) > 1 else "")
 
 
 def theory_table(studies: Sequence[Study]) -> str:
@@ -88,43 +103,13 @@ def theory_table(studies: Sequence[Study]) -> str:
     for published, found in studies:
         divisions = published.meshes[MICROPOLAR][-1]
         seven, ten = found[CLASSICAL][divisions], found[MICROPOLAR][divisions]
-        theirs = ten.differences(published)
-        apart = max(float(np.abs(theirs[name] - ours).max()) for name, ours in seven.differences(published).items())
-        rows.append(
-            [
-                published.title,
-                mesh_name(divisions),
-                percent(apart),
-                *(percent(run.worst(published)) for run in (seven, ten)),
-            ]
-        )
+        distances = (percent(run.worst(published)) for run in (seven, ten))
+        rows.append([published.title, mesh_name(divisions), percent(apart(published, seven, ten)), *distances])
     return table(("Problem", "Mesh", "Largest difference", "7 from the table", "10 from the table"), rows)
-
-
-def limit_table(studies: Sequence[Study]) -> str:
-    """Measure, table, limit and order of the classical shell."""
-    rows = []
-    for study in studies:
-        published, one = study.published, study.series(CLASSICAL)
-        data = published.data
-        if published.measure == LIMIT_POINT:
-            tabulated, what = float(_first_maximum(data["load_ratio"])), "load at the first limit point"
-        else:
-            tabulated, what = float(data[published.measure][-1]), f"`{published.measure}` at the last row"
-        rows.append(
-            [published.title, what, f"{tabulated:g}", f"{study.measure(study.finest):.4g}", f"{one.limit:.4g}",
-             f"{one.order:.1f}", f"{100.0 * (one.limit / tabulated - 1.0):+.2f} %"]
-        )  # fmt: skip
-    return table(("Problem", "Quantity", "Table", "Finest mesh", "Limit", "Order", "Limit from the table"), rows)
-
-
-def _first_maximum(loads: np.ndarray) -> float:
-    return float(loads[int(np.argmax(np.diff(loads) < 0.0))])
 
 
 def write(studies: Sequence[Study], sentences: Mapping[str, str]) -> None:
     """Put every table and sentence between its marks on the page."""
-    blocks = {"claims": claim_table(studies), "limits": limit_table(studies), "theories": theory_table(studies)}
-    blocks |= sentences
+    blocks = {"claims": claim_table(studies), "theories": theory_table(studies), **sentences}
     print("\n\n".join(blocks.values()))
     write_blocks(PAGE, blocks, COMMAND)

@@ -6,12 +6,12 @@ import pathlib
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from element_study.convergence import Series
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from magshell.output.style import ACCENT, COLOURS, GREY, INK, PALE, TEXT, TICKS, deliver
+from published_study.page import Errors
 from published_study.problems import CLASSICAL, MICROPOLAR, PAPER, Published, Variant
 from published_study.runs import Run
 
@@ -59,17 +59,17 @@ def draw_curves(found: Sequence[tuple[Published, Run]], name: str) -> None:
     deliver(figure, IMAGES / f"{name}.png")
 
 
-def draw_errors(found: Sequence[tuple[Published, Mapping[Variant, Series]]], name: str) -> None:
+def draw_errors(found: Sequence[tuple[Published, Mapping[Variant, Errors]]], name: str) -> None:
     """Errors against unknowns of every problem and variant."""
     figure = Figure(figsize=(12.6, 8.0), dpi=DPI)
     panels = figure.subplots(2, 3, sharey=True)
     for axes, (published, members) in zip(panels.flat, found, strict=True):
         axes.axhline(0.01, color=PALE, linewidth=1.0, linestyle=(0, (4, 3)), zorder=0)
-        for variant, series in members.items():
+        for variant, errors in members.items():
             fill = {"markersize": 7, "linewidth": 1.8, **LOOK[variant]}
-            axes.loglog(series.unknowns, series.errors, markeredgecolor="white", markeredgewidth=0.7, **fill)
+            axes.loglog(errors.unknowns, errors.values, markeredgecolor="white", markeredgewidth=0.7, **fill)
             hollow = {**LOOK[variant], "markersize": 7, "markerfacecolor": "white", "markeredgewidth": 1.6}
-            axes.loglog(series.unknowns[-1], series.errors[-1], **hollow)
+            axes.loglog(errors.unknowns[-1], errors.values[-1], **hollow)
             axes.plot([], [], label=variant.name, **fill)
         _plain(axes)
         axes.grid(which="major", color="#e5e7eb", linewidth=0.8)

@@ -33,8 +33,8 @@ def law_sentence(runs: Runs) -> str:
     reached, difference = 100.0 * one.strain, 100.0 * apart(published, one, other)
     worst = [f"{100.0 * run.worst(published):.2f} %" for run in (other, one)]
     return (
-        f"On {divisions[0]} × {divisions[1]} elements strains reach {reached:.0f} %, and the neo-Hookean law, which has "
-        f"the same linear limit, differs from St Venant and Kirchhoff's by up to {difference:.2f} % of the range: its "
+        f"On {divisions[0]} × {divisions[1]} elements strains reach {reached:.0f} %, and the neo-Hookean law, which has"
+        f" the same linear limit, differs from St Venant and Kirchhoff's by up to {difference:.2f} % of the range: its "
         f"largest distance from the table is {worst[0]} instead of {worst[1]}."
     )
 
