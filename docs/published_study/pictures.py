@@ -8,7 +8,7 @@ from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, NullFormatter
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 
 from magshell.output.style import ACCENT, COLOURS, GREY, INK, PALE, TEXT, TICKS, deliver
 from published_study.page import Errors
@@ -75,13 +75,15 @@ def draw_errors(found: Sequence[tuple[Published, Mapping[Variant, Errors]]], nam
         axes.grid(which="major", color="#e5e7eb", linewidth=0.8)
         axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:g} %"))
         axes.yaxis.set_minor_formatter(NullFormatter())
+        axes.xaxis.set_major_locator(FixedLocator([100, 200, 500, 1000, 2000, 5000, 10000]))
+        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}".replace(",", "\u2009")))
         axes.xaxis.set_minor_formatter(NullFormatter())
         axes.set_title(published.title, fontsize=15, color=INK, pad=10)
         axes.set_xlabel("unknowns", fontsize=13, color=INK)
     for row in panels:
         row[0].set_ylabel("error", **TEXT)
     panels[0, 0].set_ylim(bottom=max(panels[0, 0].get_ylim()[0], LEAST))
-    panels[0, 0].legend(frameon=False, fontsize=12, loc="upper right", handlelength=1.4, borderpad=0.1)
+    panels[1, 1].legend(frameon=False, fontsize=13, loc="lower left", handlelength=1.4, borderpad=0.1)
     figure.tight_layout(h_pad=1.6, w_pad=1.2)
     deliver(figure, IMAGES / f"{name}.png")
 
