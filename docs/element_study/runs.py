@@ -16,7 +16,7 @@ import magshell as ms
 from magshell.assembly import Discretisation
 from magshell.linalg import make_solver, nested_dissection
 from magshell.output.files import write_atomically
-from magshell.solver.newton import StepFailure, Trial, newton
+from magshell.solver.newton import StepFailure, System, Trial, newton
 from magshell.solver.path import Path
 
 ROOT = pathlib.Path(__file__).parents[2]
@@ -134,9 +134,10 @@ def run(
 def _settle(path: Path, free: ms.Model, clock: Clock) -> None:
     """Replace the last step of a path by the equilibrium of another model that starts from it."""
     discretisation, last = Discretisation(free, nested_dissection), path.steps[-1]
-    start = Trial(last.state, 1.0, discretisation.stresses_at(last.state), None)
-    solution = newton(discretisation, make_solver("superlu"), start, None, path.settings, lambda *_: None)
-    path.steps[-1] = last._replace(state=solution.state)
+    system = System(discretisation, make_solver("superlu"), free.course(0), path.settings)
+    start = Trial(last.state, 1.0, discretisation.stresses_at(last.state))
+    solution = newton(system, start, None, lambda *_: None)
+    path.steps[-1] = last._replace(state=solution.trial.state)
     path.discretisation = discretisation
     path.solves += solution.solves
     clock.seconds[-1] = time.process_time() - clock.begin
