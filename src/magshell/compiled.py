@@ -42,7 +42,7 @@ def cache_directory() -> Path:
     """Folder of the compiled kernels of this version of the sources (in the temporary folder if none is writable)."""
     digest = hashlib.sha256(Path(__file__).read_bytes())
     for kernels in KERNEL_FOLDERS:
-        for source in sorted((Path(__file__).parent / kernels).rglob("*.py")):
+        for source in sorted((Path(__file__).parent / kernels).glob("*.py")):
             digest.update(source.read_bytes())
     name = f"kernels-{digest.hexdigest()[:16]}"
     with contextlib.suppress(OSError, RuntimeError):

@@ -6,7 +6,7 @@ import os
 from typing import TYPE_CHECKING
 
 from magshell.problem.examples import names
-from magshell.problem.reading import read
+from magshell.problem.reading import check, find, parse, read
 
 if TYPE_CHECKING:
     from magshell.problem.building import Problem
@@ -32,7 +32,8 @@ def load(source: str | os.PathLike[str]) -> Problem:
     InputError
         One line per error, each with file and key.
     """
-    name, file = read(source)
+    found = find(source)
+    file = check(parse(found.text, found.name), found.name)
     from magshell.problem.building import build
 
-    return build(file, name)
+    return build(file, *found)

@@ -6,7 +6,7 @@ import os
 import pathlib
 import tomllib
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 
 from magshell.errors import InputError, suggest
 from magshell.problem import examples
@@ -18,6 +18,14 @@ if TYPE_CHECKING:
     from magshell.problem.schema import ProblemFile
 
 MOST_ERRORS = 10
+
+
+class Source(NamedTuple):
+    """A problem as text, its name for messages, and the folder where the paths in it start."""
+
+    name: str
+    text: str
+    folder: pathlib.Path
 
 
 def read(source: str | os.PathLike[str]) -> tuple[str, ProblemFile]:
@@ -40,8 +48,8 @@ def read(source: str | os.PathLike[str]) -> tuple[str, ProblemFile]:
     InputError
         No such file, not a text file, not TOML, or not a problem: one line per error with file and key.
     """
-    name, text = _text(source)
-    return name, check(parse(text, name), name)
+    found = find(source)
+    return found.name, check(parse(found.text, found.name), found.name)
 
 
 def parse(text: str, name: str) -> dict[str, Any]:
@@ -83,11 +91,18 @@ def check(data: Mapping[str, Any], name: str) -> ProblemFile:
         raise InputError("\n".join(_lines(error, name))) from None
 
 
-def _text(source: str | os.PathLike[str]) -> tuple[str, str]:
+def find(source: str | os.PathLike[str]) -> Source:
+    """The text of a problem file or of a built-in problem.
+
+    Raises
+    ------
+    InputError
+        No such file, or not a text file.
+    """
     path = pathlib.Path(source)
     try:
         if not path.is_file() and os.fspath(source) in examples.names():
-            return f"{source}.toml", examples.text(os.fspath(source))
+            return Source(f"{source}.toml", examples.text(os.fspath(source)), pathlib.Path())
         content = path.read_bytes()
     except FileNotFoundError:
         raise InputError(_not_found(path)) from None
@@ -96,7 +111,7 @@ def _text(source: str | os.PathLike[str]) -> tuple[str, str]:
     except (OSError, ValueError) as error:
         raise InputError(f"{source}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
     try:
-        return path.name, content.decode("utf-8-sig")
+        return Source(path.name, content.decode("utf-8-sig"), path.parent)
     except UnicodeDecodeError as error:
         raise InputError(
             f"{path.name}: is not a text file in UTF-8 (byte {error.start} is 0x{content[error.start]:02x}); "

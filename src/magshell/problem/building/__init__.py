@@ -2,28 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+import pathlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-
 from magshell import magnetics, materials
-from magshell.errors import InputError
 from magshell.linalg import make_solver
 from magshell.loads import Force, Gravity, Load, Moment, Pressure, Traction
-from magshell.magnetics import UniformField, remanence
-from magshell.magnetics.remanence import Remanence
+from magshell.magnetics import UniformField
 from magshell.materials import Material
-from magshell.mesh import Mesh, annulus, blocks, cylinder, rectangle, sphere_patch
+from magshell.mesh import Mesh
 from magshell.model import Model, Shell
 from magshell.problem import schema
+from magshell.problem.building.located import at
+from magshell.problem.building.mesh import build_mesh
+from magshell.problem.building.remanence import build_remanence
 from magshell.problem.schema import ProblemFile
 from magshell.solver.settings import Settings
 from magshell.stages import Stage
 from magshell.supports import Clamp, Prescribe, SimpleSupport, Support, SymmetryPlane
-
-MOST_ELEMENTS = 1_000_000
 
 COUPLINGS = {
     "couple": magnetics.MicropolarCouple(),
@@ -44,19 +41,25 @@ class Problem:
         Its content in SI.
     model : Model
     settings : Settings
+    text : str
+        The file as it was read.
+    folder : pathlib.Path
+        Where the paths in it start.
     """
 
     source: str
     file: ProblemFile
     model: Model
     settings: Settings
+    text: str
+    folder: pathlib.Path
 
     @property
     def title(self) -> str:
         return self.file.title or self.source
 
 
-def build(file: ProblemFile, source: str) -> Problem:
+def build(file: ProblemFile, source: str, text: str = "", folder: pathlib.Path = pathlib.Path()) -> Problem:
     """Make the model that a problem file describes.
 
     Parameters
@@ -64,19 +67,23 @@ def build(file: ProblemFile, source: str) -> Problem:
     file : ProblemFile
     source : str
         Name of the file, for messages.
+    text : str
+        As it was read.
+    folder : pathlib.Path
+        Where the paths in it start.
 
     Raises
     ------
     InputError
         What the parts are wrong about together, with file and key.
     """
-    with _at(source):
-        mesh = _mesh(file.mesh)
+    with at(source):
+        mesh = build_mesh(file.mesh, folder)
         shell = Shell(
             mesh=mesh,
             thickness=file.shell.thickness,
             material=_material(file.material, file.shell),
-            remanence=_remanence(file.remanence, mesh),
+            remanence=build_remanence(file.remanence, mesh, folder),
             element=file.shell.element,
             thickness_stretch=file.shell.thickness_stretch,
             micro_rotation=file.shell.micro_rotation,
@@ -97,59 +104,7 @@ def build(file: ProblemFile, source: str) -> Problem:
         )
         settings = Settings(**file.solver.model_dump(exclude_none=True))
         make_solver(settings.linear_solver)
-        return Problem(source, file, model, settings)
-
-
-@contextmanager
-def _at(where: str) -> Iterator[None]:
-    """Prefix every input error of the block with its place."""
-    try:
-        yield
-    except InputError as error:
-        raise InputError(f"{where}: {error}") from None
-
-
-def _mesh(table: schema.Mesh) -> Mesh:
-    with _at("mesh"):
-        mesh = _generated(table)
-    for name, selection in table.edge_groups.items():
-        with _at(f"mesh.edge_groups.{name}"):
-            mesh = mesh.select_edges(name, selection.x1, selection.x2, selection.x3)
-    for name, selection in table.node_groups.items():
-        with _at(f"mesh.node_groups.{name}"):
-            mesh = mesh.select_nodes(name, selection.x1, selection.x2, selection.x3)
-    return mesh
-
-
-def _generated(table: schema.Mesh) -> Mesh:
-    match table:
-        case schema.Rectangle():
-            _bounded(table.elements)
-            return rectangle(table.length, table.width, table.elements)
-        case schema.Annulus():
-            _bounded(table.elements)
-            return annulus(table.inner_radius, table.outer_radius, table.elements, table.angle, table.slit)
-        case schema.Cylinder():
-            _bounded(table.elements)
-            return cylinder(table.radius, table.length, table.elements, table.angle, table.axis, table.zero)
-        case schema.SpherePatch():
-            _bounded(table.elements)
-            return sphere_patch(table.radius, table.polar, table.azimuth, table.elements)
-        case schema.Blocks():
-            divisions = {name: table.divisions(name) for name in table.blocks}
-            _bounded(*divisions.values())
-            spatial = any(len(corner) == 3 for block in table.blocks.values() for corner in block.corners)
-            corners = {
-                name: np.array([[*corner, 0.0][: 3 if spatial else 2] for corner in block.corners])
-                for name, block in table.blocks.items()
-            }
-            return blocks(corners, divisions)
-
-
-def _bounded(*divisions: tuple[int, int]) -> None:
-    elements = sum(n * m for n, m in divisions)
-    if elements > MOST_ELEMENTS:
-        raise InputError(f"elements: asks for {elements} elements; at most {MOST_ELEMENTS} can be solved")
+        return Problem(source, file, model, settings, text, folder)
 
 
 def _material(table: schema.Material, shell: schema.ShellTable) -> Material:
@@ -168,39 +123,6 @@ def _material(table: schema.Material, shell: schema.ShellTable) -> Material:
     return materials.MicropolarNeoHookean(**parameters)
 
 
-def _remanence(entries: tuple[schema.Remanence, ...], mesh: Mesh) -> Remanence:
-    if len(entries) == 1 and entries[0].group is None:
-        return _one_remanence(entries[0])
-    grouped: dict[str, Remanence] = {}
-    owner: dict[int, str] = {}
-    for number, entry in enumerate(entries):
-        with _at(f"remanence[{number}].group"):
-            if entry.group is None:
-                raise InputError(f"is missing; with several entries each says its element groups {_listed(mesh)}")
-            for group in entry.group:
-                for element in mesh.elements_of(group).tolist():
-                    if element in owner:
-                        raise InputError(
-                            f"element {element} of '{group}' already has the remanence of '{owner[element]}'"
-                        )
-                    owner[element] = group
-                grouped[group] = _one_remanence(entry)
-    return remanence.by_group(grouped)
-
-
-def _one_remanence(entry: schema.Remanence) -> Remanence:
-    match entry:
-        case schema.ConstantRemanence():
-            if entry.vector is not None:
-                return remanence.constant(entry.vector)
-            direction = np.array(entry.direction)
-            return remanence.constant((entry.magnitude or 0.0) * direction / np.linalg.norm(direction))
-        case schema.MeridionalRemanence():
-            return remanence.meridional(entry.magnitude, entry.axis, entry.mirrored)
-        case schema.CircumferentialRemanence():
-            return remanence.circumferential(entry.magnitude, entry.axis, entry.towards)
-
-
 def _field(table: schema.FieldTable) -> UniformField:
     return UniformField(table.flux_density, table.stops, table.history, table.rotation_axis, table.rotation)
 
@@ -208,7 +130,7 @@ def _field(table: schema.FieldTable) -> UniformField:
 def _stages(tables: tuple[schema.StageTable, ...]) -> list[Stage]:
     stages = []
     for number, table in enumerate(tables):
-        with _at(f"stages[{number}]"):
+        with at(f"stages[{number}]"):
             stages.append(Stage(**{**table.model_dump(), "name": table.name or ""}))
     return stages
 
@@ -216,9 +138,9 @@ def _stages(tables: tuple[schema.StageTable, ...]) -> list[Stage]:
 def _supports(tables: tuple[schema.Support, ...], mesh: Mesh) -> list[Support]:
     supports: list[Support] = []
     for number, table in enumerate(tables):
-        with _at(f"supports[{number}].group"):
+        with at(f"supports[{number}].group"):
             mesh.nodes_of(table.group)
-        with _at(f"supports[{number}]"):
+        with at(f"supports[{number}]"):
             supports.append(_support(table))
     return supports
 
@@ -238,7 +160,7 @@ def _support(table: schema.Support) -> Support:
 def _loads(tables: tuple[schema.Load, ...], mesh: Mesh) -> list[Load]:
     loads: list[Load] = []
     for number, table in enumerate(tables):
-        with _at(f"loads[{number}].group"):
+        with at(f"loads[{number}].group"):
             _loaded_group(table, mesh)
         loads.append(_load(table))
     return loads
@@ -267,9 +189,5 @@ def _load(table: schema.Load) -> Load:
 
 def _probes_exist(probes: Mapping[str, tuple[float, float, float]], mesh: Mesh) -> None:
     for name, position in probes.items():
-        with _at(f"probes.{name}"):
+        with at(f"probes.{name}"):
             mesh.node_at(position)
-
-
-def _listed(mesh: Mesh) -> str:
-    return f"({', '.join(mesh.element_groups)})" if mesh.element_groups else "(this mesh has none)"

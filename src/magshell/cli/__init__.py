@@ -1,0 +1,103 @@
+"""The command `magshell`. The words are here, the work is elsewhere; each command is a module."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from importlib.metadata import version
+
+from magshell.cli import buckling, check, examples, reproduce, run
+from magshell.cli.console import complain
+from magshell.cli.status import BAD_INPUT, INTERRUPTED, NOT_SOLVED
+from magshell.errors import InputError
+
+COMMANDS = {
+    "run": run,
+    "buckling": buckling,
+    "check": check,
+    "examples": examples,
+    "reproduce": reproduce,
+}
+
+EXAMPLES = """
+examples:
+  magshell examples                       list the built-in problems
+  magshell run strip-10 --out results     solve one of them
+  magshell examples --copy gripper        copy one to change it
+  magshell check gripper.toml             see what was understood, without solving
+  magshell run gripper.toml --out results
+  magshell buckling my-plate.toml --out results
+  magshell reproduce --out reproduction   the source paper's examples beside what it says
+
+exit status: 0 solved, 1 not solved, 2 bad input, 130 interrupted"""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        What follows `magshell` on the command line.
+
+    Returns
+    -------
+    int
+        0 solved, 1 not solved, 2 bad input, 130 interrupted.
+    """
+    given = _parser().parse_args(arguments)
+    try:
+        return int(given.command(given))
+    except InputError as error:
+        complain(str(error))
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        complain("interrupted")
+        return INTERRUPTED
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return NOT_SOLVED
+    except OSError as error:
+        complain(f"{error.filename or 'a file'}: {error.strerror or error}")
+        return NOT_SOLVED
+    except Exception as error:
+        if given.debug:
+            raise
+        complain(
+            f"this is a bug in magshell: {type(error).__name__}: {error}. "
+            "Please report it with the traceback that --debug shows."
+        )
+        return NOT_SOLVED
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="magshell",
+        description="Thin structures of hard-magnetic soft material in a magnetic field.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="version", version=f"magshell {version('magshell')}")
+    parser.set_defaults(debug=False)
+    common = argparse.ArgumentParser(add_help=False)
+    common.add_argument(
+        "--debug",
+        action="store_true",
+        default=argparse.SUPPRESS,
+        help="show the traceback of an unexpected error",
+    )
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    for name, command in COMMANDS.items():
+        one = commands.add_parser(
+            name,
+            parents=[common],
+            help=command.ABOUT,
+            description=f"{command.ABOUT[0].upper()}{command.ABOUT[1:]}.",
+            epilog=command.EXAMPLES,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        one.set_defaults(command=command.run)
+        command.add_arguments(one)
+    return parser

@@ -1,0 +1,35 @@
+"""`magshell check`."""
+
+from __future__ import annotations
+
+import argparse
+
+from magshell.cli.console import console, say, say_doubts
+from magshell.cli.status import SOLVED
+
+ABOUT = "say what a problem file means, without solving"
+EXAMPLES = """
+examples:
+  magshell check gripper
+  magshell check my-arm.toml"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What follows the command."""
+    parser.add_argument("problem", metavar="FILE|NAME", help="a problem file (.toml) or a built-in problem")
+
+
+def run(given: argparse.Namespace) -> int:
+    """Say what was understood."""
+    from magshell.problem import load
+    from magshell.problem.report import describe
+
+    report = describe(load(given.problem))
+    out = console()
+    width = max(len(label) for lines in report.sections.values() for label, _ in lines)
+    for section, lines in report.sections.items():
+        say(out, section, style="bold")
+        for label, text in lines or [("none", "")]:
+            say(out, f"  {label:<{width}}  {text}")
+    say_doubts(out, report)
+    return SOLVED

@@ -1,0 +1,58 @@
+"""The mesh of a problem."""
+
+from __future__ import annotations
+
+import pathlib
+
+import numpy as np
+
+from magshell.errors import InputError
+from magshell.mesh import Mesh, annulus, blocks, cylinder, rectangle, sphere_patch
+from magshell.problem import schema
+from magshell.problem.building.located import at
+
+MOST_ELEMENTS = 1_000_000
+
+
+def build_mesh(table: schema.Mesh, folder: pathlib.Path) -> Mesh:
+    """The mesh that a table describes, with its selections as groups."""
+    with at("mesh"):
+        mesh = _generated(table)
+    for name, selection in table.edge_groups.items():
+        with at(f"mesh.edge_groups.{name}"):
+            mesh = mesh.select_edges(name, selection.x1, selection.x2, selection.x3)
+    for name, selection in table.node_groups.items():
+        with at(f"mesh.node_groups.{name}"):
+            mesh = mesh.select_nodes(name, selection.x1, selection.x2, selection.x3)
+    return mesh
+
+
+def _generated(table: schema.Mesh) -> Mesh:
+    match table:
+        case schema.Rectangle():
+            _bounded(table.elements)
+            return rectangle(table.length, table.width, table.elements)
+        case schema.Annulus():
+            _bounded(table.elements)
+            return annulus(table.inner_radius, table.outer_radius, table.elements, table.angle, table.slit)
+        case schema.Cylinder():
+            _bounded(table.elements)
+            return cylinder(table.radius, table.length, table.elements, table.angle, table.axis, table.zero)
+        case schema.SpherePatch():
+            _bounded(table.elements)
+            return sphere_patch(table.radius, table.polar, table.azimuth, table.elements)
+        case schema.Blocks():
+            divisions = {name: table.divisions(name) for name in table.blocks}
+            _bounded(*divisions.values())
+            spatial = any(len(corner) == 3 for block in table.blocks.values() for corner in block.corners)
+            corners = {
+                name: np.array([[*corner, 0.0][: 3 if spatial else 2] for corner in block.corners])
+                for name, block in table.blocks.items()
+            }
+            return blocks(corners, divisions)
+
+
+def _bounded(*divisions: tuple[int, int]) -> None:
+    elements = sum(n * m for n, m in divisions)
+    if elements > MOST_ELEMENTS:
+        raise InputError(f"elements: asks for {elements} elements; at most {MOST_ELEMENTS} can be solved")

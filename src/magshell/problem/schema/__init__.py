@@ -1,0 +1,99 @@
+"""The problem file as data: which tables and keys there are, and what each may hold.
+
+After reading, every quantity is in SI (angles of the mesh generators in degrees). What a single table cannot
+know, such as whether a group exists, is checked in `magshell.problem.building`.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar
+
+from pydantic import BeforeValidator, Field
+
+from magshell.problem import fields as f
+from magshell.problem.schema.loading import (
+    ClampTable,
+    FieldTable,
+    ForceTable,
+    GravityTable,
+    Load,
+    MomentTable,
+    PrescribeTable,
+    PressureTable,
+    SimpleTable,
+    Support,
+    SymmetryTable,
+    TractionTable,
+)
+from magshell.problem.schema.material import Material, MooneyRivlin, NeoHookean, ShellTable, StVenantKirchhoff
+from magshell.problem.schema.mesh import Annulus, Block, Blocks, Cylinder, Mesh, Rectangle, Selection, SpherePatch
+from magshell.problem.schema.remanence import (
+    CircumferentialRemanence,
+    ConstantRemanence,
+    MeridionalRemanence,
+    Remanence,
+)
+from magshell.problem.schema.solving import SolverTable, StageTable
+from magshell.problem.schema.table import Table
+
+__all__ = [
+    "Annulus",
+    "Block",
+    "Blocks",
+    "CircumferentialRemanence",
+    "ClampTable",
+    "ConstantRemanence",
+    "Cylinder",
+    "FieldTable",
+    "ForceTable",
+    "GravityTable",
+    "Load",
+    "Material",
+    "MeridionalRemanence",
+    "Mesh",
+    "MomentTable",
+    "MooneyRivlin",
+    "NeoHookean",
+    "PrescribeTable",
+    "PressureTable",
+    "ProblemFile",
+    "Rectangle",
+    "Remanence",
+    "Selection",
+    "ShellTable",
+    "SimpleTable",
+    "SolverTable",
+    "SpherePatch",
+    "StVenantKirchhoff",
+    "StageTable",
+    "Support",
+    "SymmetryTable",
+    "Table",
+    "TractionTable",
+]
+
+
+class ProblemFile(Table):
+    """The whole file."""
+
+    # Key that chooses among the kinds of a table, and where in the path of an error pydantic puts the choice.
+    chosen_by: ClassVar[dict[str, tuple[str, int]]] = {
+        "mesh": ("generator", 1),
+        "material": ("law", 1),
+        "remanence": ("kind", 2),
+        "supports": ("kind", 2),
+        "loads": ("kind", 2),
+    }
+
+    title: str = ""
+    description: str = ""
+    mesh: Annotated[Mesh, Field(discriminator="generator")]
+    shell: ShellTable
+    material: Annotated[Material, Field(discriminator="law")]
+    remanence: tuple[Annotated[Remanence, Field(discriminator="kind")], ...] = ()
+    field: FieldTable = FieldTable(flux_density=(0.0, 0.0, 0.0))
+    loads: tuple[Annotated[Load, Field(discriminator="kind")], ...] = ()
+    supports: Annotated[tuple[Annotated[Support, Field(discriminator="kind")], ...], BeforeValidator(f.not_empty)]
+    stages: tuple[StageTable, ...] = ()
+    probes: dict[f.ProbeName, f.Position] = {}
+    solver: SolverTable = SolverTable()

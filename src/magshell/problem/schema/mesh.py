@@ -1,0 +1,103 @@
+"""The table `mesh`: a generator and its numbers, and named selections."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, TypeAlias
+
+from pydantic import BeforeValidator, StrictBool, model_validator
+
+from magshell.errors import InputError
+from magshell.problem import fields as f
+from magshell.problem.schema.table import Table, key_error
+
+
+class Selection(Table):
+    """Everything on the boundary (edges) or in the mesh (nodes) that has these coordinates."""
+
+    x1: f.Length | None = None
+    x2: f.Length | None = None
+    x3: f.Length | None = None
+
+    @model_validator(mode="after")
+    def _selects_something(self) -> Selection:
+        if self.x1 is None and self.x2 is None and self.x3 is None:
+            raise InputError("selects nothing; give at least one of x1, x2, x3")
+        return self
+
+
+class _Groups(Table):
+    edge_groups: dict[f.Name, Selection] = {}
+    node_groups: dict[f.Name, Selection] = {}
+
+
+class Rectangle(_Groups):
+    """Rectangle in the plane X1-X2 with a corner at the origin; edge groups left, right, bottom, top."""
+
+    generator: Literal["rectangle"]
+    length: f.PositiveLength
+    width: f.PositiveLength
+    elements: f.Divisions
+
+
+class Block(Table):
+    """Four-sided block between its corners, itself an element group."""
+
+    corners: f.Corners
+    elements: f.Divisions | None = None
+
+
+class Blocks(_Groups):
+    """Welded four-sided blocks; `elements` holds for the blocks that do not say their own."""
+
+    generator: Literal["blocks"]
+    elements: f.Divisions | None = None
+    blocks: Annotated[dict[f.Name, Block], BeforeValidator(f.not_empty)]
+
+    @model_validator(mode="after")
+    def _every_block_is_divided(self) -> Blocks:
+        for name in self.blocks:
+            self.divisions(name)
+        return self
+
+    def divisions(self, name: str) -> tuple[int, int]:
+        """Numbers of elements of a block."""
+        own = self.blocks[name].elements or self.elements
+        if own is None:
+            raise key_error(f"blocks.{name}.elements", "is missing, and mesh.elements as well")
+        return own
+
+
+class Annulus(_Groups):
+    """Flat ring about X3 or sector of one; edge groups inner, outer and, unless it is closed, start, stop."""
+
+    generator: Literal["annulus"]
+    inner_radius: f.PositiveLength
+    outer_radius: f.PositiveLength
+    elements: f.Divisions
+    angle: f.AngleRange = (0.0, 360.0)
+    slit: StrictBool = False
+
+
+class Cylinder(_Groups):
+    """Tube or sector of one; edge groups start, end and, for a sector, angle-start, angle-stop."""
+
+    generator: Literal["cylinder"]
+    radius: f.PositiveLength
+    length: f.PositiveLength
+    elements: f.Divisions
+    angle: f.AngleRange = (0.0, 360.0)
+    axis: f.Direction = (0.0, 0.0, 1.0)
+    zero: f.Direction = (1.0, 0.0, 0.0)
+
+
+class SpherePatch(_Groups):
+    """Patch of a sphere about the origin, polar angle from +X3; edge groups top, bottom, left, right."""
+
+    generator: Literal["sphere-patch"]
+    radius: f.PositiveLength
+    polar: f.AngleRange
+    azimuth: f.AngleRange
+    elements: f.Divisions
+
+
+Mesh: TypeAlias = Rectangle | Annulus | Blocks | Cylinder | SpherePatch
