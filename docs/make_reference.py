@@ -15,6 +15,7 @@ import sys
 from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
 import blocks
+from pydantic import StrictBool
 from pydantic_core import PydanticUndefined
 
 import magshell as ms
@@ -51,7 +52,7 @@ KINDS = {
     fields.Direction: "three numbers, not all 0",
     fields.Corners: "four corners, each two or three lengths",
     str: "text",
-    schema.StrictBool: "true or false",
+    StrictBool: "true or false",
     float: "a quantity",
     tuple[float, float, float]: "three of them",
     schema.Block: "table",
