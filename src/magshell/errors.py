@@ -14,6 +14,10 @@ class InputError(ValueError):
     """The problem as stated cannot be solved; the message says what, where, and what would be right."""
 
 
+class NothingLoads(InputError):
+    """Nothing acts on the shell: it stays undeformed."""
+
+
 class MeshError(InputError):
     """The mesh cannot carry a shell; the message names elements or nodes."""
 
