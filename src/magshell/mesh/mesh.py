@@ -78,6 +78,11 @@ class Mesh:
         names = ", ".join(self.groups) or "none"
         return f"Mesh({len(self.elements)} elements, {len(self.points)} nodes, groups: {names})"
 
+    def _repr_html_(self) -> str:
+        from magshell.output.notebook import mesh_html
+
+        return mesh_html(self)
+
     @cached_property
     def _edges(self) -> Edges:
         return find_edges(self.elements)

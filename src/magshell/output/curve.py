@@ -59,7 +59,7 @@ def curve_figure(path: Path) -> Figure:
     axes = figure.subplots()
     field, x = abscissa(path)
     unstable = np.array([bool(step.negative_pivots) for step in path.steps])
-    for label, values, style in sorted(_curves(path), key=lambda curve: -curve[1][-1]):
+    for label, values, style in sorted(curves(path), key=lambda curve: -curve[1][-1]):
         axes.plot(x, 1e3 * values, label=label, markersize=5, markeredgecolor="white", markeredgewidth=0.6, **style)
         hollow = {"linestyle": "none", "marker": style["marker"], "color": style["color"], "markersize": 5}
         axes.plot(x[unstable], 1e3 * values[unstable], markerfacecolor="white", **hollow)
@@ -87,7 +87,7 @@ def abscissa(path: Path) -> tuple[bool, FloatArray]:
     return True, np.array([1e3 * float(step.flux_density @ along) for step in path.steps])
 
 
-def _curves(path: Path) -> list[tuple[str, FloatArray, dict[str, Any]]]:
+def curves(path: Path) -> list[tuple[str, FloatArray, dict[str, Any]]]:
     """Label, values in m and style of every curve worth drawing."""
     states = [step.state for step in path.steps]
     probes = {name: np.array([state.u[node] for state in states]) for name, node in path.model.probe_nodes.items()}

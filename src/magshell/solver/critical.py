@@ -62,6 +62,10 @@ class CriticalPoint(NamedTuple):
     mode: FloatArray
     negative_pivots: tuple[int | None, int | None]
 
+    def __repr__(self) -> str:
+        place = f"load factor {self.load_factor:.6g} of stage {self.stage + 1}"
+        return f"CriticalPoint({self.number}: {self.kind} at {place})"
+
 
 class Found(NamedTuple):
     """A located critical point, not yet numbered."""

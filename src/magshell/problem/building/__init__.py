@@ -56,7 +56,17 @@ class Problem:
 
     @property
     def title(self) -> str:
+        """As the file says it, or its name."""
         return self.file.title or self.source
+
+    def __repr__(self) -> str:
+        return f"Problem('{self.source}': {self.title})\n{self.model!r}"
+
+    def _repr_html_(self) -> str:
+        from magshell.output.notebook import model_html
+        from magshell.problem.report import describe
+
+        return model_html(self.model, self.title, describe(self).warnings)
 
 
 def build(file: ProblemFile, source: str, text: str = "", folder: pathlib.Path = pathlib.Path()) -> Problem:
