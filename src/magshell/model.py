@@ -109,6 +109,9 @@ class Shell:
                 f"shell: thickness_stretch is '{self.thickness_stretch}'. {suggest(self.thickness_stretch, STRETCHES)}"
             )
 
+    def __repr__(self) -> str:
+        return f"Shell({self.mesh!r}, thickness {self.thickness:g} m, {self.material!r}, element '{self.element.name}')"
+
     @property
     def carriers(self) -> dict[str, AnyArray]:
         """Which nodes carry the fields u, w, phi and omega: boolean arrays (nodes,)."""
@@ -191,6 +194,15 @@ class Model:
         check_supported(mesh, self.normals, self.constraints)
         self._check_the_micro_rotation_matters()
         self._check_something_loads()
+
+    def __repr__(self) -> str:
+        parts = (self.shell, self.field, self.coupling, *self.loads, *self.supports)
+        return "\n  ".join([f"Model({len(self.stages)} stages, {len(self.probes)} probes)", *map(repr, parts)])
+
+    def _repr_html_(self) -> str:
+        from magshell.output.notebook import model_html
+
+        return model_html(self)
 
     def _check_targets(self) -> None:
         for stage in self.stages:

@@ -63,12 +63,20 @@ class BucklingMode(NamedTuple):
     state: State
     mode: FloatArray
 
+    def __repr__(self) -> str:
+        return f"BucklingMode({self.number}: load factor {self.load_factor:.6g} of stage {self.stage + 1})"
+
 
 class Buckling(NamedTuple):
     """Buckling modes, and the path through the stages before the last one."""
 
     path: Path
     modes: list[BucklingMode]
+
+    def _repr_html_(self) -> str:
+        from magshell.output.notebook import buckling_html
+
+        return buckling_html(self)
 
 
 def buckling(

@@ -59,6 +59,9 @@ class Step(NamedTuple):
     loads: FloatArray
     negative_pivots: int | None
 
+    def __repr__(self) -> str:
+        return f"Step({self.number}: load factor {self.load_factor:.6g} of stage {self.stage + 1})"
+
 
 class Probe(NamedTuple):
     """A node along the path: load_factor (n,), flux_density (n, 3) in T, displacement u (n, 3) in m."""
@@ -121,6 +124,14 @@ class Path:
     solves: int = 0
     cuts: int = 0
     cpu_seconds: float = 0.0
+
+    def __repr__(self) -> str:
+        return f"Path({max(len(self.steps) - 1, 0)} steps, {self.discretisation.dofs} unknowns: {self.reason})"
+
+    def _repr_html_(self) -> str:
+        from magshell.output.notebook import path_html
+
+        return path_html(self)
 
     def probe(self, name: str) -> Probe:
         """Displacement of a probe, or of a node group of one node, along the path.
