@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from magshell.arrays import AnyArray, FloatArray
-from magshell.errors import InputError, suggest
+from magshell.errors import InputError, NothingLoads, suggest
 from magshell.history import amplitudes
 from magshell.loading import Amounts, Course, Loading
 from magshell.loads import Applied, Load
@@ -238,9 +238,9 @@ class Model:
             return
         otherwise = "and no support moves, nor is there a load: nothing loads the shell"
         if not any(amounts.field * self.field.magnitude for amounts in self._ends):
-            raise InputError(f"field: flux_density is zero {otherwise}")
+            raise NothingLoads(f"field: flux_density is zero {otherwise}")
         if not np.any(self.shell.remanence(mesh, mesh.points[mesh.elements])):
-            raise InputError(f"remanence: it is zero everywhere {otherwise}")
+            raise NothingLoads(f"remanence: it is zero everywhere {otherwise}")
 
     def _forces_at_rest(self) -> list[FloatArray]:
         nodes = len(self.shell.mesh.points)

@@ -6,18 +6,17 @@ A process sends back only steps and counts: the model and its equations are made
 from __future__ import annotations
 
 import multiprocessing
-import os
 import signal
 import threading
-from collections.abc import Callable, Generator, Iterator, Mapping
+from collections.abc import Callable, Generator, Mapping
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, ProcessPoolExecutor, wait
-from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from magshell.assembly import Discretisation
 from magshell.errors import InputError, SolveError
 from magshell.linalg import nested_dissection
 from magshell.problem.building import build
+from magshell.processes import cores, interrupts_wait
 from magshell.solver.critical import CriticalPoint
 from magshell.solver.events import Iteration, Observer
 from magshell.solver.path import Path, Step
@@ -77,13 +76,13 @@ def solve_all(
     listener = threading.Thread(target=_listen, args=(messages, watch), daemon=True)
     listener.start()
     executor = ProcessPoolExecutor(
-        min(workers or _cores(), len(files)), context, initializer=_prepare, initargs=(messages, stop)
+        min(workers or cores(), len(files)), context, initializer=_prepare, initargs=(messages, stop)
     )
     names: dict[Future[_Solved], str] = {}
     try:
         for group in (by_size[:1], by_size[:0:-1]):
             try:
-                with _interrupts_wait():
+                with interrupts_wait():
                     names = {executor.submit(_run, name, files[name]): name for name in group}
             except BrokenExecutor as error:
                 yield from (Outcome(name, None, _words(error)) for name in group)
@@ -117,23 +116,6 @@ def _outcome(name: str, future: Future[_Solved], problem: Any) -> Outcome:
 
 def _words(error: BaseException) -> str:
     return str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
-
-
-def _cores() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-@contextmanager
-def _interrupts_wait() -> Iterator[None]:
-    """Ctrl-C is held back while processes are started, and they never hear it: the parent reacts and tells them."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    previous = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, previous)
 
 
 def _listen(messages: Any, watch: Watcher) -> None:
