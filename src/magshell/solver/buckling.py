@@ -111,7 +111,7 @@ def buckling(
         for observer in observers:
             observer.started(discretisation, settings)
         follower.run(len(model.stages) - 1)
-        state, arc_length, _ = follower.enter(len(model.stages) - 1)
+        state, arc_length = follower.enter(len(model.stages) - 1)[:2]
         path.converged, path.reason = True, "the last stage is reached"
         slope = _slope(follower.system, follower.metric, state, arc_length)
         load_factors, vectors = _eigenpairs(follower.system, state, slope, modes)

@@ -46,8 +46,19 @@ class Observer:
     def started(self, discretisation: Discretisation, settings: Settings) -> None:
         """Before the first step."""
 
+    def resumed(self, path: Path) -> None:
+        """In place of `started`, where a path goes on; as it is left here, its steps so far are told once more."""
+        self.started(path.discretisation, path.settings)
+        for step in path.steps:
+            self.converged(step)
+        for point in path.critical_points:
+            self.critical(point)
+
     def iterated(self, iteration: Iteration) -> None:
         """After each residual."""
+
+    def kept(self, path: Path) -> None:
+        """After each converged step, before any observer is told of it: `path.trail[-1]` is its waypoint."""
 
     def converged(self, step: Step) -> None:
         """After each converged step, the undeformed one included."""

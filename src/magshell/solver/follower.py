@@ -7,8 +7,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from magshell.arrays import FloatArray
-from magshell.shell.state import State
 from magshell.solver.balance import Balance, balance
 from magshell.solver.constraints import Constraint, Metric, Sphere
 from magshell.solver.critical import LIMIT_POINT, CriticalPoint, locate, passed
@@ -16,7 +14,9 @@ from magshell.solver.events import Iteration, Observer
 from magshell.solver.goals import Goal, LoadGoal, ProbeGoal, goals_of
 from magshell.solver.newton import Solution, StepFailure, System, Trial, newton
 from magshell.solver.path import Path, Step
+from magshell.solver.starts import Start, start_of
 from magshell.solver.track import Direction, Point, Slope, arc, crossing, point_at, trial_at
+from magshell.solver.waypoint import Waypoint
 
 GROWTH, CUT = 2.5, 0.35
 # Failures in a row after which the arc length is held instead.
@@ -37,7 +37,8 @@ class Follower:
     """Steps from goal to goal.
 
     What drives a stage (the load factor, a displacement or the arc length) is held in each step. Where holding a load
-    factor or a displacement fails, the arc length is held instead until the next goal.
+    factor or a displacement fails, the arc length is held instead until the next goal. What the next step depends on is
+    a waypoint of the path when a step has converged, so a path that has steps already goes on with them.
     """
 
     def __init__(self, path: Path, system: System, observers: Sequence[Observer]) -> None:
@@ -46,77 +47,96 @@ class Follower:
         mesh = path.model.shell.mesh
         self.metric = Metric(1.0 / (len(mesh.points) * mesh.size**2))
         self.stage, self.track = 0, list[Point]()
-        self.radius, self.by_arc, self.reason = 0.0, False, ""
-        self.begin = time.perf_counter()
+        self.goal, self.taken, self.by_arc, self.radius = 0, 0, False, 0.0
+        self.reason = ""
+        self.begin, self.cpu = time.perf_counter(), time.process_time() - path.cpu_seconds
 
     def run(self, stages: int) -> None:
         """Follow the path through its first stages; raises StepFailure with the reason."""
-        for number in range(stages):
-            state, arc_length, mode = self.enter(number)
+        trail = self.path.trail
+        for number in range(trail[-1].step.stage if trail else 0, stages):
+            start = self.enter(number)
             goals = goals_of(self.path.model, self.system.course)
-            self._begin(state, arc_length, mode, goals[0])
-            for goal in goals:
-                self.by_arc = self.system.course.stage.control == "arc-length"
+            if trail and number == trail[-1].step.stage:
+                self._resume(start, goals[0])
+            else:
+                self._begin(start, goals[0])
+            for goal in goals[self.goal :]:
                 self._reach(goal)
 
-    def enter(self, number: int) -> tuple[State, float, FloatArray | None]:
-        """Make a stage the present one; its first state, the arc length there and, on a branch, the mode."""
-        model, self.stage = self.path.model, number
-        stage, start = model.stages[number], None
-        state, arc_length, mode = self.discretisation.undeformed(), 0.0, None
-        if stage.branch is not None:
-            critical = self._critical(stage.branch)
-            state, arc_length, mode = critical.state, critical.arc_length, stage.side * critical.mode
-            start = self.path.courses[critical.stage].amounts(critical.load_factor)
-        elif self.path.steps:
-            last = self.path.steps[-1]
-            state, arc_length = last.state, last.arc_length
-            start = self.path.courses[last.stage].amounts(last.load_factor)
-        course = model.course(number, start)
-        self.path.courses.append(course)
+    def enter(self, number: int) -> Start:
+        """Make a stage the present one."""
+        start, self.stage = start_of(self.path, number), number
+        course = self.path.model.course(number, start.amounts)
+        self.path.courses[number:] = [course]
         self.system = self.system._replace(course=course)
-        return state, arc_length, mode
+        return start
 
-    def _critical(self, number: int) -> CriticalPoint:
-        found = self.path.critical_points
-        if number > len(found):
-            raise StepFailure(
-                f"stage {self.stage + 1} wants to branch off at critical point {number}, but the path before it has "
-                f"{len(found) or 'none'}"
-            )
-        return found[number - 1]
-
-    def _begin(self, state: State, arc_length: float, mode: FloatArray | None, goal: Goal) -> None:
+    def _begin(self, start: Start, goal: Goal) -> None:
         """The first point of a stage, and the size of its first step."""
+        point, solution = self._first(start, goal)
+        self.track = [point]
+        self.radius = BRANCH_STEP
+        if start.mode is None:
+            self.radius = self.settings.first_step / abs(point.slope.load)
+        self._head_for(0)
+        if not self.path.steps:
+            self._keep(point, solution, None, [])
+
+    def _resume(self, start: Start, goal: Goal) -> None:
+        """The points and the size of the next step where the last step of a stage left them."""
+        own = [waypoint for waypoint in self.path.trail if waypoint.step.stage == self.stage]
+        self.track = [self._point(waypoint) for waypoint in own]
+        if len(own) < 3 and self.stage > 0:
+            self.track.insert(0, self._first(start, goal)[0])
+        last = own[-1]
+        self.goal, self.taken, self.by_arc, self.radius = last.goal, last.taken, last.by_arc, last.radius
+        self.path.cuts, self.system.linear_solver.factorisations = last.cuts, last.solves
+
+    def _first(self, start: Start, goal: Goal) -> tuple[Point, Solution]:
+        """The first point of a stage, and its state as a solution."""
+        state = start.state
         trial = Trial(state, 0.0, self.discretisation.stresses_at(state))
         solution = Solution(trial, self.system.assemble(trial), [0.0], None)
-        point = point_at(self.system, self.metric, solution, arc_length, (np.zeros_like(state.u), 1.0))
-        if mode is not None:
-            length = self.metric.norm(mode[:, :3], 0.0)
-            slope = Slope(mode / length, np.zeros_like(state.alpha), 0.0)
-            point, self.radius = point._replace(slope=slope, negative_pivots=None), BRANCH_STEP
-        else:
-            self.radius = self.settings.first_step / point.slope.load
-            if isinstance(goal, ProbeGoal) and goal.slope(point.slope) * (goal.wanted - goal.value(point)) < 0.0:
-                point = point._replace(slope=point.slope.reversed)
-        self.track = [point]
-        if not self.path.steps:
-            self._keep(point, solution, None)
+        point = point_at(self.system, self.metric, solution, start.arc_length, (np.zeros_like(state.u), 1.0))
+        if start.mode is not None:
+            length = self.metric.norm(start.mode[:, :3], 0.0)
+            slope = Slope(start.mode / length, np.zeros_like(state.alpha), 0.0)
+            return point._replace(slope=slope, negative_pivots=None), solution
+        if isinstance(goal, ProbeGoal) and goal.slope(point.slope) * (goal.wanted - goal.value(point)) < 0.0:
+            return point._replace(slope=point.slope.reversed), solution
+        return point, solution
+
+    def _point(self, waypoint: Waypoint) -> Point:
+        step = waypoint.step
+        stresses = self.discretisation.stresses_at(step.state)
+        return Point(step.arc_length, step.load_factor, step.state, waypoint.slope, stresses, step.negative_pivots)
+
+    def _head_for(self, goal: int) -> None:
+        """Make a goal of the stage the next one."""
+        self.goal, self.taken = goal, 0
+        self.by_arc = self.system.course.stage.control == "arc-length"
 
     def _reach(self, goal: Goal) -> None:
         """Steps until the goal is met."""
-        steps, failures = 0, 0
+        failures = 0
         while True:
             last, (trial, constraint, at_goal) = self.track[-1], self._next(goal)
             distance = self.metric.norm(trial.state.u - last.state.u, trial.load_factor - last.load_factor)
-            point = self._solved(trial, constraint, goal, at_goal)
-            if point is not None:
-                grown = distance * self._growth()
+            solved = self._solved(trial, constraint, goal, at_goal)
+            if solved is not None:
+                point, solution, critical = solved
+                grown = distance * self._growth(solution.solves)
                 self.radius = max(self.radius, grown) if at_goal else grown
-                failures, steps = 0, steps + 1
+                self.taken += 1
+                if at_goal:
+                    self._head_for(self.goal + 1)
+                self.track = [*self.track[-2:], point]
+                self._keep(point, solution, self._balance(solution), critical)
                 if at_goal:
                     return
-                if self.by_arc and steps > WANDERING:
+                failures = 0
+                if self.by_arc and self.taken > WANDERING:
                     raise StepFailure(
                         f"{_position(self.path)}: {WANDERING} steps by arc length have not led to the next stop"
                     )
@@ -157,8 +177,10 @@ class Follower:
         ]
         return min((limit for limit in limits if limit is not None), default=self.radius)
 
-    def _solved(self, trial: Trial, constraint: Constraint | None, goal: Goal, at_goal: bool) -> Point | None:
-        """The point that a step leads to, which is then kept; None, and the observers know why, if it failed."""
+    def _solved(
+        self, trial: Trial, constraint: Constraint | None, goal: Goal, at_goal: bool
+    ) -> tuple[Point, Solution, list[CriticalPoint]] | None:
+        """What a step leads to, and the critical points passed; None, and the observers know why, if it failed."""
         last = self.track[-1]
         try:
             solution = newton(self.system, trial, constraint, lambda *heard: self._report(trial, *heard))
@@ -171,20 +193,13 @@ class Follower:
             self._check(point, chord, length, self.metric.norm(*missed))
             if not at_goal and (goal.wanted - goal.value(last)) * (goal.wanted - goal.value(point)) <= 0.0:
                 raise StepFailure("the step goes beyond a stop")
-            critical = self._located(last, point)
+            return point, solution, self._located(last, point)
         except StepFailure as failure:
             self.reason = str(failure)
             self.path.cuts += 1
             for observer in self.observers:
                 observer.cut(trial.load_factor, self.reason)
             return None
-        self.track = [*self.track[-2:], point]
-        self._keep(point, solution, self._balance(solution))
-        for one in critical:
-            self.path.critical_points.append(one)
-            for observer in self.observers:
-                observer.critical(one)
-        return point
 
     def _check(self, point: Point, chord: Direction, length: float, missed: float) -> None:
         """Whether a point lies on the path that was followed so far; raises StepFailure with what speaks against it."""
@@ -226,19 +241,32 @@ class Follower:
                 Iteration(len(self.path.steps), self.stage, trial.load_factor, iteration, residual, kind, seconds)
             )
 
-    def _keep(self, point: Point, solution: Solution, balanced: Balance | None) -> None:
+    def _keep(
+        self, point: Point, solution: Solution, balanced: Balance | None, critical: Sequence[CriticalPoint]
+    ) -> None:
+        """Lengthen the path, and tell of it."""
         loading = self.system.course.at(point.load_factor)
         step = Step(
             len(self.path.steps), point.load_factor, point.state, solution.solves, solution.residuals[-1], balanced,
             point.arc_length, self.stage, loading.flux_density, loading.loads, point.negative_pivots,
         )  # fmt: skip
-        self.path.steps.append(step)
+        self.path.add(
+            Waypoint(
+                step, tuple(critical), point.slope, self.goal, self.taken, self.by_arc, self.radius, self.path.cuts,
+                self.system.linear_solver.factorisations, time.process_time() - self.cpu,
+            )
+        )  # fmt: skip
+        for observer in self.observers:
+            observer.kept(self.path)
         for observer in self.observers:
             observer.converged(step)
+        for one in critical:
+            for observer in self.observers:
+                observer.critical(one)
 
-    def _growth(self) -> float:
+    def _growth(self, solves: int) -> float:
         """Factor of the step size after the solves that the last step took."""
-        return float(np.clip(self.settings.target_iterations / max(self.path.steps[-1].iterations, 1), 0.4, GROWTH))
+        return float(np.clip(self.settings.target_iterations / max(solves, 1), 0.4, GROWTH))
 
 
 def _position(path: Path) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from os import PathLike
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from magshell.shell.state import State
 from magshell.solver.balance import Balance
 from magshell.solver.critical import CriticalPoint
 from magshell.solver.settings import Settings
+
+if TYPE_CHECKING:
+    from magshell.solver.waypoint import Waypoint
 
 
 class Step(NamedTuple):
@@ -110,6 +113,8 @@ class Path:
     solves, cuts : int
         Linear solves in all, those of cut steps included; cuts.
     cpu_seconds : float
+    trail : list of Waypoint
+        Of the last steps, up to three: with `steps`, all that going on depends on.
     """
 
     model: Model
@@ -124,6 +129,7 @@ class Path:
     solves: int = 0
     cuts: int = 0
     cpu_seconds: float = 0.0
+    trail: list[Waypoint] = field(default_factory=list)
 
     def __repr__(self) -> str:
         return f"Path({max(len(self.steps) - 1, 0)} steps, {self.discretisation.dofs} unknowns: {self.reason})"
@@ -132,6 +138,17 @@ class Path:
         from magshell.output.notebook import path_html
 
         return path_html(self)
+
+    def add(self, waypoint: Waypoint) -> None:
+        """Lengthen the path by a converged step."""
+        self.critical_points.extend(waypoint.critical_points)
+        self.cuts, self.solves, self.cpu_seconds = waypoint.cuts, waypoint.solves, waypoint.cpu_seconds
+        self.trail = [*self.trail[-2:], waypoint]
+        self.steps.append(waypoint.step)
+
+    def end(self) -> None:
+        """Note that the last step is the end of the last stage."""
+        self.converged, self.reason = True, "the end of the path is reached"
 
     def probe(self, name: str) -> Probe:
         """Displacement of a probe, or of a node group of one node, along the path.

@@ -41,16 +41,45 @@ def solve(model: Model, settings: Settings | None = None, observers: Sequence[Ob
     """
     settings = settings or Settings()
     linear_solver = make_solver(settings.linear_solver)
-    discretisation = Discretisation(model, nested_dissection)
-    path = Path(model, discretisation, settings, linear_solver.name)
+    return resume(Path(model, Discretisation(model, nested_dissection), settings, linear_solver.name), observers)
+
+
+def resume(path: Path, observers: Sequence[Observer] = ()) -> Path:
+    """Go on with a path where its last step left it.
+
+    Where the linear solver repeats its results (SuperLU), every step after it is the same to the last bit as if the
+    path had never been left.
+
+    Parameters
+    ----------
+    path : Path
+        Of a results folder (`magshell.results.read`), or one that was interrupted; it is lengthened.
+    observers : sequence of Observer
+        Told of the steps so far by `Observer.resumed`.
+
+    Returns
+    -------
+    Path
+        The path.
+
+    Raises
+    ------
+    SolveError
+        As by `solve`.
+    """
+    model, discretisation, settings = path.model, path.discretisation, path.settings
+    linear_solver = make_solver(settings.linear_solver)
     logger.info("%d unknowns, linear solver: %s", discretisation.dofs, linear_solver.name)
-    cpu = time.process_time()
+    cpu = time.process_time() - path.cpu_seconds
     try:
         for observer in observers:
-            observer.started(discretisation, settings)
+            if path.steps:
+                observer.resumed(path)
+            else:
+                observer.started(discretisation, settings)
         system = System(discretisation, linear_solver, model.course(0), settings)
         Follower(path, system, observers).run(len(model.stages))
-        path.converged, path.reason = True, "the end of the path is reached"
+        path.end()
     except StepFailure as failure:
         path.reason = str(failure)
         raise SolveError(path.reason, path) from None
