@@ -1,0 +1,62 @@
+"""One remanence per element group."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from magshell.arrays import FloatArray, IntArray
+from magshell.errors import InputError
+from magshell.magnetics.remanence.template import placed
+from magshell.magnetics.remanence.vectors import Remanence
+
+if TYPE_CHECKING:
+    from magshell.mesh import Mesh
+
+
+class ByGroup:
+    """What `by_group` returns."""
+
+    def __init__(self, remanences: Mapping[str, Remanence]) -> None:
+        self._remanences = dict(remanences)
+
+    def __call__(self, mesh: Mesh, points: FloatArray) -> FloatArray:
+        """The remanence at points (elements, points, 3); every part is asked at NaN outside its group."""
+        values = np.zeros(points.shape)
+        owner = np.full(len(points), "", dtype=object)
+        for group, remanence in self._remanences.items():
+            members = mesh.elements_of(group)
+            taken = members[owner[members] != ""]
+            if taken.size:
+                raise InputError(
+                    f"remanence: element {taken[0]} is in the groups '{owner[taken[0]]}' and '{group}'; "
+                    "one of them must give it up"
+                )
+            owner[members] = group
+            values[members] = remanence(mesh, _only(members, points))[members]
+        return values
+
+    def placed(self, mesh: Mesh, points: FloatArray) -> FloatArray | None:
+        """Where the templates of the groups have the points; other groups stay; None without any template."""
+        positions = points.copy()
+        moved = False
+        for group, remanence in self._remanences.items():
+            members = mesh.elements_of(group)
+            there = placed(remanence, mesh, _only(members, points))
+            if there is not None:
+                positions[members] = there[members]
+                moved = True
+        return positions if moved else None
+
+
+def by_group(remanences: Mapping[str, Remanence]) -> Remanence:
+    """One remanence per element group; elements in none of the groups have none."""
+    return ByGroup(remanences)
+
+
+def _only(members: IntArray, points: FloatArray) -> FloatArray:
+    asked = np.full(points.shape, np.nan)
+    asked[members] = points[members]
+    return asked

@@ -1,0 +1,83 @@
+"""Remanence that turns, or changes its magnitude, along a coordinate.
+
+With the coordinate s = (X - X_0) · t along a direction $t$, the remanence is
+
+    m(s) = M(s) (cos θ(s) e + sin θ(s) n),
+
+where e is the direction at angle 0 and n that at 90°. θ and M are piecewise linear between given positions and constant
+beyond the first and the last. A harmonic wave of length λ, m = M (cos(2πs/λ + φ) e + sin(2πs/λ + φ) n), is the straight
+line from θ(0) = φ to θ(λ) = φ + 360°, continued as long as the part; alternating poles are a magnitude that changes its
+sign. Neither needs a name of its own.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from magshell.arrays import FloatArray
+from magshell.errors import InputError
+from magshell.magnetics.remanence.vectors import Remanence, direction, vector
+
+if TYPE_CHECKING:
+    from magshell.mesh import Mesh
+
+PARALLEL = 1e-6
+
+
+def profile(
+    magnitudes: ArrayLike,
+    angles: ArrayLike,
+    positions: ArrayLike,
+    along: ArrayLike,
+    start: ArrayLike,
+    towards: ArrayLike,
+    origin: ArrayLike = (0.0, 0.0, 0.0),
+) -> Remanence:
+    """Magnitude and angle of the remanence as tables over a coordinate.
+
+    Parameters
+    ----------
+    magnitudes : array_like, shape () or (n,)
+        M at the positions, T; may change sign.
+    angles : array_like, shape () or (n,)
+        θ at the positions, rad; they may pass 2π, so that the remanence turns several times.
+    positions : array_like, shape (n,)
+        s, m, rising.
+    along : array_like, shape (3,)
+        Direction of the coordinate.
+    start, towards : array_like, shape (3,)
+        Direction at angle 0, and the direction into which a positive angle turns it: at 90° the part of `towards`
+        normal to `start`.
+    origin : array_like, shape (3,)
+        Where s is zero, m.
+
+    Raises
+    ------
+    InputError
+        Tables of different lengths, positions that do not rise, `towards` parallel to `start`.
+    """
+    s = np.asarray(positions, dtype=float)
+    if s.ndim != 1 or not len(s) or not np.isfinite(s).all() or np.any(np.diff(s) <= 0.0):
+        raise InputError(f"remanence: positions are {s.tolist()}; they must be a list of finite numbers that rise")
+    tables = []
+    for name, values in (("magnitudes", magnitudes), ("angles", angles)):
+        table = np.asarray(values, dtype=float)
+        if table.ndim > 1 or table.size not in (1, len(s)) or not np.isfinite(table).all():
+            raise InputError(f"remanence: {name} are {table.tolist()}; give one, or one for each of {len(s)} positions")
+        tables.append(np.broadcast_to(table, s.shape))
+    t, e, zero = direction("along", along), direction("start", start), vector("origin", origin)
+    n = direction("towards", towards)
+    n = n - (n @ e) * e
+    if np.linalg.norm(n) < PARALLEL:
+        raise InputError("remanence: towards is parallel to start; it says into which direction the remanence turns")
+    n = n / np.linalg.norm(n)
+
+    def sample(mesh: Mesh, points: FloatArray) -> FloatArray:
+        at = (points - zero) @ t
+        M, θ = (np.interp(at, s, table)[..., None] for table in tables)
+        return np.asarray(M * (np.cos(θ) * e + np.sin(θ) * n))
+
+    return sample

@@ -1,0 +1,60 @@
+"""What every remanence is, and the checks that they share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from magshell.arrays import AnyArray, FloatArray
+from magshell.errors import InputError
+
+if TYPE_CHECKING:
+    from magshell.mesh import Mesh
+
+Remanence: TypeAlias = Callable[["Mesh", FloatArray], FloatArray]
+"""From the mesh and points of each of its elements, (elements, points, 3) in m, to the remanence there, in T."""
+
+ON_THE_AXIS = 1e-12
+
+
+def vector(name: str, value: ArrayLike) -> FloatArray:
+    """Three finite components."""
+    try:
+        components = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        components = np.empty(0)
+    if components.shape != (3,) or not np.all(np.isfinite(components)):
+        raise InputError(f"remanence: {name} is {value!r}; it needs 3 finite components")
+    return components
+
+
+def direction(name: str, value: ArrayLike) -> FloatArray:
+    """A unit vector along three finite components that are not all zero."""
+    components = vector(name, value)
+    length = np.linalg.norm(components)
+    if length == 0.0:
+        raise InputError(f"remanence: {name} is the zero vector; it must have a direction")
+    return np.asarray(components / length)
+
+
+def scaled(along: FloatArray, magnitude: float, what: str) -> FloatArray:
+    """Vectors (..., 3) made this long."""
+    length = np.linalg.norm(along, axis=-1, keepdims=True)
+    if np.any(length < ON_THE_AXIS):
+        raise InputError(f"remanence: the {what} direction is undefined on the axis itself; a point lies there")
+    return np.asarray(magnitude * along / length)
+
+
+def flipped_towards(values: FloatArray, preferred: FloatArray | None) -> FloatArray:
+    """Vectors (..., 3), reversed where their component along `preferred` is negative."""
+    if preferred is None:
+        return values
+    return np.asarray(values * np.where(values @ preferred < 0.0, -1.0, 1.0)[..., None])
+
+
+def first_element(bad: AnyArray) -> int:
+    """Number of the first element with a bad point (elements, points)."""
+    return int(np.flatnonzero(bad.any(axis=1))[0])
