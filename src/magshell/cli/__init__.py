@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from importlib.metadata import version
 
-from magshell.cli import buckling, check, examples, reproduce, run
+from magshell.cli import buckling, check, examples, reproduce, run, sweep
 from magshell.cli.console import complain
 from magshell.cli.status import BAD_INPUT, INTERRUPTED, NOT_SOLVED
 from magshell.errors import InputError
@@ -18,6 +18,7 @@ COMMANDS = {
     "buckling": buckling,
     "check": check,
     "examples": examples,
+    "sweep": sweep,
     "reproduce": reproduce,
 }
 

@@ -1,0 +1,100 @@
+"""The folder of a sweep: what it was asked for, and where its cells are.
+
+`sweep.toml` says how to go on, `problem.toml` is the file that is varied, `cells/0001/` and so on are folders of
+results, `sweep.csv` is the table, `sweep.png` its picture.
+"""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import tomllib
+from collections.abc import Sequence
+
+from magshell.errors import InputError
+from magshell.output.files import write_atomically
+from magshell.problem.reading import Source
+
+_VERSION = 1
+
+
+class SweepFolder:
+    """Paths in the folder of a sweep.
+
+    Parameters
+    ----------
+    path : path
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self.path = pathlib.Path(path)
+        self.definition = self.path / "sweep.toml"
+        self.problem = self.path / "problem.toml"
+        self.table = self.path / "sweep.csv"
+        self.picture = self.path / "sweep.png"
+        self.cells = self.path / "cells"
+        self.stop = self.cells / "stop"
+
+    def begin(self, source: Source, settings: Sequence[str]) -> None:
+        """Note what the sweep is, or go on with one that is the same.
+
+        Raises
+        ------
+        InputError
+            The folder holds another sweep, or the results of a run.
+        """
+        if self.definition.exists():
+            found, others = self.read()
+            if (found.text, found.name) != (source.text, source.name):
+                raise InputError(f"--out {self.path}: holds the sweep of another '{found.name}'; name another folder")
+            if list(settings) != others:
+                listed = " ".join(f'--set "{text}"' for text in others)
+                raise InputError(f"--out {self.path}: holds another sweep ({listed}); name another folder")
+            return
+        if (self.path / "summary.json").exists() or self.problem.exists():
+            raise InputError(f"--out {self.path}: holds the results of a run; name another folder")
+        write_atomically(self.problem, source.text.encode())
+        write_atomically(self.definition, _definition(source, settings).encode())
+
+    def read(self) -> tuple[Source, list[str]]:
+        """The problem file that is varied, and the settings as they were written.
+
+        Raises
+        ------
+        InputError
+            There is no sweep, or its files are damaged.
+        """
+        try:
+            definition = tomllib.loads(self.definition.read_text(encoding="utf-8"))
+            text = self.problem.read_text(encoding="utf-8")
+        except (FileNotFoundError, NotADirectoryError) as error:
+            raise InputError(f"{error.filename}: there is no such file, so this is no folder of a sweep") from None
+        except OSError as error:
+            raise InputError(f"{error.filename}: cannot be read: {error.strerror}") from None
+        except (ValueError, RecursionError) as error:
+            raise InputError(f"{self.definition}: is damaged: {error}; start the sweep again") from None
+        if definition.get("version") != _VERSION:
+            found = definition.get("version")
+            raise InputError(f"{self.definition}: version: is {found!r}; this magshell reads version {_VERSION}")
+        name, folder, settings = (definition.get(key) for key in ("problem", "folder", "set"))
+        if not isinstance(name, str) or not isinstance(folder, str):
+            raise InputError(f"{self.definition}: problem and folder: are not both text; start the sweep again")
+        if not isinstance(settings, list) or not all(isinstance(text, str) for text in settings):
+            raise InputError(f"{self.definition}: set: is not a list of texts; start the sweep again")
+        return Source(name, text, pathlib.Path(folder)), settings
+
+    def cell(self, name: str) -> pathlib.Path:
+        """Folder of the results of a cell."""
+        return self.cells / name
+
+
+def _definition(source: Source, settings: Sequence[str]) -> str:
+    import tomlkit
+
+    document = tomlkit.document()
+    document.add(tomlkit.comment("A sweep. To go on, or to solve again what failed: magshell sweep --resume DIR"))
+    document["version"] = _VERSION
+    document["problem"] = tomlkit.string(source.name).comment("what problem.toml is a copy of")
+    document["folder"] = tomlkit.string(str(source.folder.resolve())).comment("where the paths in it start")
+    document["set"] = tomlkit.item(list(settings)).multiline(True)
+    return tomlkit.dumps(document)

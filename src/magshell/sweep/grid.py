@@ -1,0 +1,111 @@
+"""The cells of a sweep: every combination of the values, each checked before any is solved."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from magshell.errors import InputError, NothingLoads
+from magshell.problem.alternatives import Setting, Value
+from magshell.problem.building import build
+from magshell.problem.changes import changed, label
+from magshell.problem.reading import MOST_ERRORS, Source, check, parse
+
+MOST_CELLS = 10_000
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One problem of a sweep.
+
+    Attributes
+    ----------
+    number : int
+        From 1; the values of the last setting vary fastest.
+    values : tuple of Value
+        One for each setting.
+    label : str
+        The same in words.
+    source : Source
+        The problem file with these values.
+    probes : tuple of str
+    laws : tuple of type
+        Of material and coupling: what the kernels are compiled for.
+    undeformed : bool
+        Nothing acts on the shell, so there is nothing to solve.
+    """
+
+    number: int
+    values: tuple[Value, ...]
+    label: str
+    source: Source
+    probes: tuple[str, ...]
+    laws: tuple[type, ...] = ()
+    undeformed: bool = False
+
+    @property
+    def name(self) -> str:
+        """Its folder."""
+        return f"{self.number:04d}"
+
+
+def grid(
+    source: Source, settings: Sequence[Setting], checked: Callable[[int], None] = lambda count: None
+) -> list[Cell]:
+    """All cells, in the order of their numbers.
+
+    Parameters
+    ----------
+    source : Source
+        The problem file that is varied.
+    settings : sequence of Setting
+    checked : callable
+        Told how many cells have been checked.
+
+    Raises
+    ------
+    InputError
+        Too many cells, or what is wrong with any of them: one line per error, with file, key and cells.
+    """
+    if not settings:
+        raise InputError("--set: is missing; give at least one KEY=VALUES, such as shell.thickness=0.4,0.8 mm")
+    count = math.prod(len(setting.values) for setting in settings)
+    if count > MOST_CELLS:
+        raise InputError(f"--set: asks for {count} cells; a sweep has at most {MOST_CELLS}")
+    cells: list[Cell] = []
+    faults: dict[str, list[str]] = {}
+    for number, values in enumerate(itertools.product(*(setting.values for setting in settings)), start=1):
+        changes = {setting.key: value for setting, value in zip(settings, values, strict=True)}
+        try:
+            cells.append(_cell(number, changes, source))
+        except InputError as error:
+            for line in str(error).splitlines():
+                faults.setdefault(line, []).append(f"cell {number}: {label(changes)}")
+        checked(number)
+    if faults:
+        raise InputError("\n".join(_lines(faults, count, source.name)))
+    return cells
+
+
+def _cell(number: int, changes: dict[str, Value], source: Source) -> Cell:
+    found = changed(source, changes)
+    file = check(parse(found.text, found.name), found.name)
+    cell = Cell(number, tuple(changes.values()), label(changes), found, tuple(file.probes))
+    try:
+        model = build(file, *found).model
+    except NothingLoads:
+        return replace(cell, undeformed=True)
+    return replace(cell, laws=(type(model.shell.material), type(model.coupling)))
+
+
+def _lines(faults: dict[str, list[str]], count: int, name: str) -> list[str]:
+    """What is wrong, and in which cells."""
+    lines = []
+    for fault, where in faults.items():
+        others = f" and {len(where) - 1} more" if len(where) > 1 else ""
+        lines.append(f"{fault} (every cell)" if len(where) == count else f"{fault} ({where[0]}{others})")
+    if len(lines) > MOST_ERRORS:
+        lines[MOST_ERRORS:] = [f"{name}: and {len(lines) - MOST_ERRORS} more errors"]
+    return lines
