@@ -26,6 +26,14 @@ PAGE = pathlib.Path(__file__).parent / "problem-file.md"
 
 KINDS = {
     fields.Length: "length",
+    fields.NonNegativeLength: "length ≥ 0",
+    fields.Positions: "list of lengths, rising",
+    fields.FluxDensities: "flux density, or list of them",
+    fields.Angle: "angle",
+    fields.Angles: "angle, or list of them",
+    fields.FileName: "file name",
+    fields.LengthUnit: "unit of length",
+    fields.FluxDensityUnit: "unit of flux density",
     fields.PositiveLength: "length > 0",
     fields.NonNegativeStress: "stress ≥ 0",
     fields.PositiveStress: "stress > 0",
@@ -56,6 +64,7 @@ KINDS = {
     float: "a quantity",
     tuple[float, float, float]: "three of them",
     schema.Block: "table",
+    tuple[schema.FoldTable, ...]: "list of folds, see below",
     tuple[fields.PositiveFluxDensity, ...]: "list of flux densities > 0, rising",
     dict[fields.Name, schema.Selection]: "table of selections",
     dict[fields.Name, schema.Block]: "table of blocks",
@@ -73,6 +82,11 @@ MATERIAL = {
     "length_scale": "$l$ of the couple stress $\\mu l^2\\,\\Gamma$.",
 }
 REMANENCE = {"kind": "Which field.", "group": "Element groups it holds for; may be left out of a single entry."}
+TEMPLATE = {
+    **REMANENCE,
+    "magnitude": "Magnitude that the part keeps.",
+    "direction": "Of the uniform magnetising field, with the part in the shape below.",
+}
 SUPPORT = {"kind": "Which support.", "group": "Group of edges, nodes or elements whose nodes are held."}
 LOAD = {"kind": "Which load.", "group": "Group of edges, nodes or elements that it acts on."}
 ON_ELEMENTS = {**LOAD, "group": "Group of elements that it acts on."}
@@ -186,6 +200,90 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "magnitude": "Its magnitude.",
             "axis": "Of the circles, through the origin; the sense is axis × radius.",
             "towards": "Where its component along this direction would be negative, the sign is flipped.",
+        },
+    ),
+    "radial": (
+        schema.RadialRemanence,
+        {
+            **REMANENCE,
+            "magnitude": "Its magnitude.",
+            "axis": "Direction of the axis.",
+            "through": "A point of the axis.",
+            "inward": "Towards the axis instead of away from it.",
+        },
+    ),
+    "tangential": (
+        schema.TangentialRemanence,
+        {
+            **REMANENCE,
+            "magnitude": "Its magnitude.",
+            "direction": "Laid into the tangent plane of the surface at every point.",
+        },
+    ),
+    "along-curve": (
+        schema.CurveRemanence,
+        {
+            **REMANENCE,
+            "curve": "Group of edges: the tangent at its nearest point is the direction. It runs as its first edge.",
+            "magnitude": "Its magnitude.",
+            "towards": "Where its component along this direction would be negative, the sign is flipped.",
+        },
+    ),
+    "profile": (
+        schema.ProfileRemanence,
+        {
+            **REMANENCE,
+            "along": "Direction of the coordinate $s$.",
+            "positions": "Values of $s$, rising.",
+            "magnitude": "At the positions, or one for all; linear between, constant beyond. May change sign.",
+            "direction": "Of the remanence at angle 0.",
+            "angle": "At the positions, or one for all; linear between, constant beyond. May pass 360°.",
+            "towards": "Direction into which a positive angle turns; needed with an angle.",
+            "origin": "Where $s = 0$.",
+        },
+    ),
+    "remanence-file": (
+        schema.FileRemanence,
+        {
+            **REMANENCE,
+            "file": "CSV with the columns `b1,b2,b3` and, if its rows are places, `x1,x2,x3`; without them one row per "
+            "element. Or a `.npy` array (elements, 3).",
+            "flux_density_unit": 'Unit of the vectors, such as `"mT"`.',
+            "length_unit": "Unit of the places.",
+            "tolerance": "Largest distance from the centre of an element to its place.",
+        },
+    ),
+    "rolled": (
+        schema.RolledRemanence,
+        {
+            **TEMPLATE,
+            "radius": "Of the rolled mid-surface.",
+            "through": "A point of the line at which rolling begins; what lies before stays flat.",
+            "along": "In the flat part, normal to that line: the direction of rolling.",
+            "towards": "Normal of the flat part, to the side of the cylinder.",
+        },
+    ),
+    "folded": (
+        schema.FoldedRemanence,
+        {**TEMPLATE, "folds": "From the piece that stays outwards, each as on the flat part."},
+    ),
+    "fold": (
+        schema.FoldTable,
+        {
+            "through": "A point of the fold line.",
+            "along": "In the flat part, normal to the line: into the piece that moves.",
+            "towards": "Normal of the flat part: into which that piece moves.",
+            "angle": "By which it turns.",
+            "radius": "Of the bend; 0 for a sharp fold.",
+        },
+    ),
+    "deformed": (
+        schema.DeformedRemanence,
+        {
+            **TEMPLATE,
+            "displacements": "CSV with the columns `u1,u2,u3` and, for the undeformed places of the nodes, `x1,x2,x3`; "
+            "without them one row per node. Or a `.npy` array (nodes, 3).",
+            "length_unit": "Unit of its numbers.",
         },
     ),
     "field": (
@@ -325,6 +423,7 @@ OTHERWISE = {
         for kind in ("force", "moment", "traction", "pressure", "gravity", "field", "prescribe")
     },
     ("constant", "vector"): "magnitude and direction",
+    ("profile", "angle"): "0",
     ("file", "field"): "none",
     ("file", "solver"): "see below",
 }

@@ -124,7 +124,7 @@ def test_harmonic_profile():
     length, phase = 3.7e-3, np.radians(45)
     plate = ms.mesh.rectangle(length, 1.5e-3, (6, 2))
     points = integration_points(plate)
-    wave = remanence.profile(62e-3, (phase, phase + 2 * np.pi), (0, length), (1, 0, 0), (1, 0, 0), (0, 0, 1))
+    wave = remanence.profile(62e-3, (0, length), (1, 0, 0), (1, 0, 0), (phase, phase + 2 * np.pi), (0, 0, 1))
     θ = 2 * np.pi * points[..., 0] / length + phase
     expected = 62e-3 * np.stack([np.cos(θ), 0 * θ, np.sin(θ)], axis=-1)
     assert np.abs(wave(plate, points) - expected).max() < 1e-15
@@ -134,7 +134,7 @@ def test_table_of_magnitudes_is_constant_beyond_its_ends():
     x = np.array([-1.0, 0.0, 0.5, 1.0, 2.5, 4.0])
     points = np.stack([x, 0 * x, 0 * x], axis=-1)[None] + [1.0, 2.0, 3.0]
     values = remanence.profile(
-        (1.0, -1.0, 3.0), np.pi / 2, (0, 1, 3), (5, 0, 0), (1, 0, 0), (1, 1, 0), origin=(1, 0, 0)
+        (1.0, -1.0, 3.0), (0, 1, 3), (5, 0, 0), (1, 0, 0), np.pi / 2, (1, 1, 0), origin=(1, 0, 0)
     )(None, points)
     assert np.abs(values[0, :, 1] - [1, 1, 0, -1, 2, 3]).max() < 1e-15
     assert np.abs(values[0, :, [0, 2]]).max() < 1e-15
@@ -148,6 +148,7 @@ def test_table_of_magnitudes_is_constant_beyond_its_ends():
         ({"angles": (0, 1, 2)}, "one for each of 2 positions"),
         ({"magnitudes": (0, np.nan)}, "magnitudes are"),
         ({"towards": (-2, 0, 0)}, "parallel to start"),
+        ({"towards": None}, "towards is missing"),
         ({"along": (0, 0, 0)}, "along is the zero vector"),
     ],
 )

@@ -41,7 +41,7 @@ def test_a_rolled_strip_remembers_a_turning_direction():
 def test_it_is_a_harmonic_profile():
     """The two ways to say it agree: rolled once round in a field along X3, and one wave that begins at 90°."""
     rolled = remanence.template(roll(LENGTH / (2 * np.pi)), 62e-3, X3)
-    wave = remanence.profile(62e-3, np.radians((90, -270)), (0, LENGTH), X1, X1, X3)
+    wave = remanence.profile(62e-3, (0, LENGTH), X1, X1, np.radians((90, -270)), X3)
     assert np.abs(rolled(STRIP, POINTS) - wave(STRIP, POINTS)).max() < 1e-15
 
 

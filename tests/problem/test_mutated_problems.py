@@ -16,6 +16,7 @@ from magshell.problem import examples
 from magshell.problem.building import Problem, build
 from magshell.problem.reading import check, parse
 from problem.loaded import EVERY_LOAD
+from problem.magnetised import FIELDS, SURFACES, TEMPLATES
 from problem.test_staged_problems import STAGED
 
 WORDS = re.compile(r"[\w.+-]+|\S")
@@ -48,7 +49,7 @@ NEW_WORDS = st.one_of(
     st.text(max_size=5),
 )
 EXAMPLES = map(examples.text, ("strip-10", "gripper", "pump", "thin-cross"))
-TEXTS = st.sampled_from([LOADED, EVERY_LOAD, STAGED, *EXAMPLES])
+TEXTS = st.sampled_from([LOADED, EVERY_LOAD, STAGED, FIELDS, SURFACES, TEMPLATES, *EXAMPLES])
 
 
 @st.composite
@@ -88,6 +89,7 @@ VALUES = st.one_of(
         ["clamp", "simple", "symmetry", "prescribe", "constant", "circumferential", "meridional", "blocks"]
     ),
     st.sampled_from(["force", "moment", "traction", "pressure", "gravity"]),
+    st.sampled_from(["radial", "tangential", "along-curve", "profile", "file", "rolled", "folded", "deformed"]),
     st.integers(-2, 60),
     st.builds(
         "{} {}".format,

@@ -14,7 +14,7 @@ from typing import Annotated
 from pydantic import AfterValidator, BeforeValidator
 
 from magshell import units
-from magshell.errors import InputError
+from magshell.errors import InputError, suggest
 
 # Beyond these no shell exists; within them no product of two magnitudes overflows or vanishes.
 SMALLEST, LARGEST = 1e-12, 1e12
@@ -73,6 +73,29 @@ def _text_like(pattern: re.Pattern[str], rule: str) -> Callable[[object], str]:
     return read
 
 
+def _file_name(value: object) -> str:
+    if not isinstance(value, str):
+        raise InputError(f"{units.quoted(value)} is not a file name; write it in quotes")
+    if not value.strip() or not value.isprintable():
+        raise InputError(f"{units.quoted(value)} is not a file name")
+    return value
+
+
+def _unit_of(dimension: units.Dimension) -> BeforeValidator:
+    def read(value: object) -> str:
+        if value not in list(dimension.units):
+            raise InputError(
+                f"{units.quoted(value)} is not a unit of {dimension.name}. {suggest(str(value)[:40], dimension.units)}"
+            )
+        return str(value)
+
+    return BeforeValidator(read)
+
+
+def _as_list(value: object) -> object:
+    return value if isinstance(value, list | tuple) else [value]
+
+
 def _one_or_more(value: object) -> object:
     if value == []:
         raise InputError("is an empty list; name at least one group or leave the key out")
@@ -91,7 +114,7 @@ def _one_each(what: str) -> Callable[[object], object]:
 
 def not_empty(value: object) -> object:
     """A list or table that must hold something."""
-    if value in ([], {}):
+    if value in ([], {}, ()):
         raise InputError("is empty; it needs at least one entry")
     return value
 
@@ -116,6 +139,7 @@ def _nonzero(value: tuple[float, float, float]) -> tuple[float, float, float]:
 
 Length = Annotated[float, _quantity(units.LENGTH)]
 PositiveLength = Annotated[float, _positive_quantity(units.LENGTH)]
+NonNegativeLength = Annotated[float, _quantity(units.LENGTH), AfterValidator(_not_negative)]
 NonNegativeStress = Annotated[float, _quantity(units.STRESS), AfterValidator(_not_negative)]
 PositiveStress = Annotated[float, _positive_quantity(units.STRESS)]
 FluxDensity = Annotated[float, _quantity(units.FLUX_DENSITY)]
@@ -134,6 +158,9 @@ Count = Annotated[int, BeforeValidator(_count)]
 
 Name = Annotated[str, BeforeValidator(_text_like(_NAME, "letters, digits, spaces and _ - + . * ' only"))]
 ProbeName = Annotated[str, BeforeValidator(_text_like(_PROBE_NAME, "letters, digits and _ - ' only"))]
+FileName = Annotated[str, BeforeValidator(_file_name)]
+LengthUnit = Annotated[str, _unit_of(units.LENGTH)]
+FluxDensityUnit = Annotated[str, _unit_of(units.FLUX_DENSITY)]
 Names = Annotated[tuple[Name, ...], BeforeValidator(_one_or_more)]
 
 Divisions = Annotated[tuple[Count, Count], _list_of(2, "numbers of elements in the two directions")]
@@ -162,6 +189,9 @@ AccelerationVector = Annotated[
 ]
 History = Annotated[tuple[Number, ...], BeforeValidator(_one_each("multiplier"))]
 Rotation = Annotated[tuple[Angle, ...], BeforeValidator(_one_each("angle"))]
+FluxDensities = Annotated[tuple[FluxDensity, ...], BeforeValidator(_as_list), AfterValidator(not_empty)]
+Angles = Annotated[tuple[Angle, ...], BeforeValidator(_as_list), AfterValidator(not_empty)]
+Positions = Annotated[tuple[Length, ...], BeforeValidator(not_empty)]
 Corner = Annotated[tuple[Length, ...], _list_of((2, 3), "coordinates X1, X2 and, out of the plane, X3")]
 Corners = Annotated[tuple[Corner, Corner, Corner, Corner], _list_of(4, "corners, one after the other")]
 

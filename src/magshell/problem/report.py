@@ -16,6 +16,7 @@ from magshell.problem import load_report, schema
 from magshell.problem.building import Problem
 from magshell.problem.fields import DIMENSION_OF_FIELD
 from magshell.problem.load_report import Strength
+from magshell.problem.remanence_report import sense
 from magshell.problem.wording import counted, quantity, vector
 from magshell.units import DENSITY, FLUX_DENSITY, LENGTH, STRESS, show
 
@@ -185,26 +186,12 @@ def _remanence(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]
     mesh, magnitude = problem.model.shell.mesh, figures.remanence
     for entry in problem.file.remanence:
         for group in entry.group or ():
-            yield group, f"{_span(magnitude, mesh.elements_of(group))}, {_sense(entry)}"
+            yield group, f"{_span(magnitude, mesh.elements_of(group))}, {sense(entry)}"
         if entry.group is None:
-            yield "everywhere", f"{_span(magnitude, np.arange(len(magnitude)))}, {_sense(entry)}"
+            yield "everywhere", f"{_span(magnitude, np.arange(len(magnitude)))}, {sense(entry)}"
     bare = int((magnitude == 0.0).sum())
     if bare:
         yield "none in", f"{bare} of {len(magnitude)} elements"
-
-
-def _sense(entry: schema.Remanence) -> str:
-    match entry:
-        case schema.ConstantRemanence():
-            along = np.array(entry.direction if entry.vector is None else entry.vector)
-            length = np.linalg.norm(along)
-            return f"constant, along {vector(along / length)}" if length else "constant"
-        case schema.MeridionalRemanence():
-            mirrored = ", mirrored at the equator" if entry.mirrored else ""
-            return f"meridional, away from the pole {vector(entry.axis)}{mirrored}"
-        case schema.CircumferentialRemanence():
-            towards = f", towards {vector(entry.towards)}" if entry.towards else ""
-            return f"circumferential, about the axis {vector(entry.axis)}{towards}"
 
 
 def _span(magnitude: FloatArray, elements: IntArray) -> str:

@@ -31,7 +31,7 @@ COINCIDENT = 1e-5
 def from_file(
     file: str | os.PathLike[str],
     flux_density_unit: str = "T",
-    length_unit: str = "m",
+    length_unit: str | None = "m",
     tolerance: float | None = None,
 ) -> Remanence:
     """Remanence from a table.
@@ -42,8 +42,10 @@ def from_file(
         A CSV file whose first line names the columns `b1,b2,b3`, and `x1,x2,x3` where the rows are places (see
         `at_places`); without them it has one row per element, in the order of the mesh. Other columns are passed over.
         Or a `.npy` file: an array (elements, 3).
-    flux_density_unit, length_unit : str
-        Of its numbers.
+    flux_density_unit : str
+        Of its vectors.
+    length_unit : str or None
+        Of its places; None: it has none.
     tolerance : float, optional
         Largest distance from the centre of an element to its place, m.
 
@@ -52,7 +54,7 @@ def from_file(
     InputError
         No such file; no such column; a line with a number that is none, too few or too many; an unknown unit.
     """
-    tesla, metre = factor(flux_density_unit, units.FLUX_DENSITY), factor(length_unit, units.LENGTH)
+    tesla = factor(flux_density_unit, units.FLUX_DENSITY)
     path = pathlib.Path(file)
     if path.suffix == ".npy":
         vectors, places = read_array(path), None
@@ -60,7 +62,9 @@ def from_file(
         vectors, places = read_columns(path, FLUX, PLACE)
     if places is None:
         return per_element(tesla * vectors)
-    return at_places(metre * places, tesla * vectors, tolerance)
+    if length_unit is None:
+        raise InputError(f"{path.name}: has the columns {','.join(PLACE)}; length_unit must say in which unit")
+    return at_places(factor(length_unit, units.LENGTH) * places, tesla * vectors, tolerance)
 
 
 class DisplacementsAtPlaces:

@@ -29,11 +29,11 @@ PARALLEL = 1e-6
 
 def profile(
     magnitudes: ArrayLike,
-    angles: ArrayLike,
     positions: ArrayLike,
     along: ArrayLike,
     start: ArrayLike,
-    towards: ArrayLike,
+    angles: ArrayLike = 0.0,
+    towards: ArrayLike | None = None,
     origin: ArrayLike = (0.0, 0.0, 0.0),
 ) -> Remanence:
     """Magnitude and angle of the remanence as tables over a coordinate.
@@ -42,22 +42,24 @@ def profile(
     ----------
     magnitudes : array_like, shape () or (n,)
         M at the positions, T; may change sign.
-    angles : array_like, shape () or (n,)
-        θ at the positions, rad; they may pass 2π, so that the remanence turns several times.
     positions : array_like, shape (n,)
         s, m, rising.
     along : array_like, shape (3,)
         Direction of the coordinate.
-    start, towards : array_like, shape (3,)
-        Direction at angle 0, and the direction into which a positive angle turns it: at 90° the part of `towards`
-        normal to `start`.
+    start : array_like, shape (3,)
+        Direction at angle 0.
+    angles : array_like, shape () or (n,)
+        θ at the positions, rad; they may pass 2π, so that the remanence turns several times.
+    towards : array_like, shape (3,), optional
+        Into which a positive angle turns: at 90° the remanence has the direction of the part of this that is normal to
+        `start`. Needed where an angle is not zero.
     origin : array_like, shape (3,)
         Where s is zero, m.
 
     Raises
     ------
     InputError
-        Tables of different lengths, positions that do not rise, `towards` parallel to `start`.
+        Tables of different lengths, positions that do not rise, `towards` missing or parallel to `start`.
     """
     s = np.asarray(positions, dtype=float)
     if s.ndim != 1 or not len(s) or not np.isfinite(s).all() or np.any(np.diff(s) <= 0.0):
@@ -69,11 +71,9 @@ def profile(
             raise InputError(f"remanence: {name} are {table.tolist()}; give one, or one for each of {len(s)} positions")
         tables.append(np.broadcast_to(table, s.shape))
     t, e, zero = direction("along", along), direction("start", start), vector("origin", origin)
-    n = direction("towards", towards)
-    n = n - (n @ e) * e
-    if np.linalg.norm(n) < PARALLEL:
-        raise InputError("remanence: towards is parallel to start; it says into which direction the remanence turns")
-    n = n / np.linalg.norm(n)
+    n = _normal_to(e, towards) if towards is not None else np.zeros(3)
+    if towards is None and np.any(tables[1]):
+        raise InputError("remanence: towards is missing; it says into which direction the angles turn the remanence")
 
     def sample(mesh: Mesh, points: FloatArray) -> FloatArray:
         at = (points - zero) @ t
@@ -81,3 +81,12 @@ def profile(
         return np.asarray(M * (np.cos(θ) * e + np.sin(θ) * n))
 
     return sample
+
+
+def _normal_to(e: FloatArray, towards: ArrayLike) -> FloatArray:
+    n = direction("towards", towards)
+    n = n - (n @ e) * e
+    length = np.linalg.norm(n)
+    if length < PARALLEL:
+        raise InputError("remanence: towards is parallel to start; it says into which direction the remanence turns")
+    return np.asarray(n / length)

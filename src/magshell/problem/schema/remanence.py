@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Literal, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
-from pydantic import StrictBool, model_validator
+from pydantic import BeforeValidator, StrictBool, model_validator
 
 from magshell.problem import fields as f
 from magshell.problem.schema.table import Table, key_error
@@ -53,4 +53,115 @@ class CircumferentialRemanence(_Remanence):
     towards: f.Direction | None = None
 
 
-Remanence: TypeAlias = ConstantRemanence | MeridionalRemanence | CircumferentialRemanence
+class RadialRemanence(_Remanence):
+    """Away from an axis, or towards it."""
+
+    kind: Literal["radial"]
+    magnitude: f.PositiveFluxDensity
+    axis: f.Direction = (0.0, 0.0, 1.0)
+    through: f.Position = (0.0, 0.0, 0.0)
+    inward: StrictBool = False
+
+
+class TangentialRemanence(_Remanence):
+    """In the surface, along a direction laid into its tangent plane."""
+
+    kind: Literal["tangential"]
+    magnitude: f.PositiveFluxDensity
+    direction: f.Direction
+
+
+class CurveRemanence(_Remanence):
+    """Along a group of edges; with `towards`, in the sense that has a positive component along it."""
+
+    kind: Literal["along-curve"]
+    curve: f.Name
+    magnitude: f.PositiveFluxDensity
+    towards: f.Direction | None = None
+
+
+class ProfileRemanence(_Remanence):
+    """Magnitude and angle as piecewise linear tables over a coordinate."""
+
+    kind: Literal["profile"]
+    along: f.Direction
+    positions: f.Positions
+    magnitude: f.FluxDensities
+    direction: f.Direction
+    angle: f.Angles = (0.0,)
+    towards: f.Direction | None = None
+    origin: f.Position = (0.0, 0.0, 0.0)
+
+
+class FileRemanence(_Remanence):
+    """From a table of places or of elements, or an array."""
+
+    kind: Literal["file"]
+    file: f.FileName
+    flux_density_unit: f.FluxDensityUnit
+    length_unit: f.LengthUnit | None = None
+    tolerance: f.PositiveLength | None = None
+
+
+class _Template(_Remanence):
+    magnitude: f.PositiveFluxDensity
+    direction: f.Direction
+
+
+class RolledRemanence(_Template):
+    """Magnetised while the flat part was wrapped about a cylinder."""
+
+    kind: Literal["rolled"]
+    radius: f.PositiveLength
+    through: f.Position
+    along: f.Direction
+    towards: f.Direction
+
+
+class FoldTable(Table):
+    """A fold of a flat part, sharp or with a radius."""
+
+    through: f.Position
+    along: f.Direction
+    towards: f.Direction
+    angle: f.Angle
+    radius: f.NonNegativeLength = 0.0
+
+
+class FoldedRemanence(_Template):
+    """Magnetised while the flat part was folded."""
+
+    kind: Literal["folded"]
+    folds: Annotated[tuple[FoldTable, ...], BeforeValidator(f.not_empty)]
+
+
+class DeformedRemanence(_Template):
+    """Magnetised while the part was deformed, with displacements from a table or an array."""
+
+    kind: Literal["deformed"]
+    displacements: f.FileName
+    length_unit: f.LengthUnit
+
+
+Template: TypeAlias = RolledRemanence | FoldedRemanence | DeformedRemanence
+Remanence: TypeAlias = (
+    ConstantRemanence
+    | MeridionalRemanence
+    | CircumferentialRemanence
+    | RadialRemanence
+    | TangentialRemanence
+    | CurveRemanence
+    | ProfileRemanence
+    | FileRemanence
+    | Template
+)
+
+
+def files_of(entry: Remanence) -> tuple[str, ...]:
+    """Names of the files that an entry reads."""
+    match entry:
+        case FileRemanence():
+            return (entry.file,)
+        case DeformedRemanence():
+            return (entry.displacements,)
+    return ()
