@@ -156,7 +156,7 @@ def _one(item: str, unit: str) -> Value:
     if match is None:
         return value_of({"true": True, "false": False}.get(item, item))
     if match.group(2) or unit:
-        return value_of(f"{match.group(1)} {match.group(2) or unit}")
+        return value_of(f"{match.group(1)} {(match.group(2) or unit).strip()}")
     return value_of(int(item) if _WHOLE.fullmatch(item) else float(item))
 
 
@@ -177,7 +177,7 @@ def _range(item: str, carried: str) -> list[Value]:
         _FINE.divide(numbers[0] * (count - 1 - place) + last * place, Decimal(count - 1)) for place in range(count)
     ]
     if unit:
-        return [value_of(f"{written(step)} {unit}") for step in steps]
+        return [value_of(f"{written(step)} {unit.strip()}") for step in steps]
     whole = all(step == step.to_integral_value() and abs(step) < 10**15 for step in steps)
     return [value_of(int(step) if whole else float(step)) for step in steps]
 
