@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from magshell import mesh, problem
+    from magshell import mesh, problem, results
     from magshell.errors import InputError, MeshError, SolveError
     from magshell.loads import Force, Gravity, Moment, Pressure, Traction
     from magshell.magnetics import (
@@ -44,7 +44,12 @@ _HOME = {
     "magshell.stages": ("Stage",),
     "magshell.supports": ("Clamp", "Prescribe", "SimpleSupport", "SymmetryPlane"),
 }
-_MODULES = {"mesh": "magshell.mesh", "problem": "magshell.problem", "remanence": "magshell.magnetics.remanence"}
+_MODULES = {
+    "mesh": "magshell.mesh",
+    "problem": "magshell.problem",
+    "remanence": "magshell.magnetics.remanence",
+    "results": "magshell.results",
+}
 _NAMES = {name: home for home, names in _HOME.items() for name in names}
 
 __all__ = [
@@ -81,6 +86,7 @@ __all__ = [
     "mesh",
     "problem",
     "remanence",
+    "results",
     "solve",
 ]
 

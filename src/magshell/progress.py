@@ -72,6 +72,14 @@ class ProgressDisplay(Observer):
         if not assemble.is_compiled(type(model.shell.material), type(model.coupling)):
             self._line("compiling the kernels for the first use of this version (about a minute) ...")
 
+    def resumed(self, path: Path) -> None:
+        """Say how far the path is already."""
+        self.started(path.discretisation, path.settings)
+        last = path.steps[-1]
+        self._line(f"{len(path.steps) - 1} steps to {self._load(last)}{_field(last)} are there")
+        if self._live:
+            self.converged(last)
+
     def iterated(self, iteration: Iteration) -> None:
         """Show how far the step is."""
         if self._live:

@@ -154,9 +154,14 @@ def test_disk_that_refuses(
     (out / "summary.json").write_text("of an earlier run")
     assert main(["run", strip, "--out", str(out)]) == 1
     shown = capsys.readouterr()
-    assert shown.err == f"error: {out}/history.csv: No space left on device\n"
+    full = f"{out}/history.csv: No space left on device"
+    assert shown.err.splitlines() == [
+        f"error: strip.toml: {full}; the 0 steps that converged are in {out}",
+        f"error: go on with: magshell run --resume {out}",
+    ]
     assert f"an earlier run in {out} are replaced" in shown.out
-    assert not (out / "summary.json").exists()
+    summary = json.loads((out / "summary.json").read_text())
+    assert (summary["converged"], summary["reason"]) == (False, full)
 
 
 def test_progress_on_a_terminal(strip: str, monkeypatch: pytest.MonkeyPatch) -> None:

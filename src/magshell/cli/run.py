@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
+import json
 import pathlib
+import shlex
+import signal
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from magshell.cli.console import complain, console, say, say_doubts
 from magshell.cli.folders import made
 from magshell.cli.status import INTERRUPTED, NOT_SOLVED, SOLVED
-from magshell.errors import SolveError
+from magshell.errors import InputError, SolveError
 from magshell.units import LENGTH, show
 
 if TYPE_CHECKING:
+    from types import FrameType
+
     from rich.console import Console
 
-    from magshell.solver import Path
+    from magshell.problem.building import Problem
+    from magshell.solver import Observer, Path
 
 _AT_THE_END = ("summary.json", "curve.png", "shape.png")
 
@@ -24,51 +32,108 @@ EXAMPLES = """
 examples:
   magshell run strip-10 --out results
   magshell run my-arm.toml --out results/my-arm
+  magshell run --resume results/my-arm
 
 DIR receives history.csv (the curves), shell.pvd and steps/ (for ParaView), summary.json and the pictures, and where
 the path turns or branches critical.csv and critical/ (the modes).
-Every converged step is on disk at once: Ctrl-C keeps them."""
+Every converged step is on disk at once, in checkpoint/ with all that going on needs: after Ctrl-C, a full disk or a
+kill, --resume goes on from the last one, to the same numbers as a run that was never stopped."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What follows the command."""
-    parser.add_argument("problem", metavar="FILE|NAME", help="a problem file (.toml) or a built-in problem")
-    parser.add_argument("--out", metavar="DIR", required=True, help="folder for the results, made if missing")
+    parser.add_argument("problem", metavar="FILE|NAME", nargs="?", help="a problem file (.toml) or a built-in problem")
+    folder = parser.add_mutually_exclusive_group(required=True)
+    folder.add_argument("--out", metavar="DIR", help="folder for the results, made if missing")
+    folder.add_argument("--resume", metavar="DIR", help="go on with the run in this folder (no FILE then)")
 
 
 def run(given: argparse.Namespace) -> int:
     """Solve, and write the results."""
-    from magshell.output.critical import CriticalWriter
-    from magshell.output.history import HistoryWriter
-    from magshell.output.pictures import draw_pictures
-    from magshell.output.summary import write_summary
-    from magshell.output.vtu import VtuWriter
-    from magshell.problem import load
+    from magshell.output.files import remove_temporaries
+    from magshell.output.lock import alone
+
+    if given.resume is not None:
+        if given.problem is not None:
+            raise InputError("run: --resume takes the problem from its folder; give FILE with --out, or --resume alone")
+        directory = pathlib.Path(given.resume)
+        if not directory.is_dir():
+            raise InputError(f"--resume {directory}: is not a folder; name one that `magshell run --out` made")
+        made(directory)
+    elif given.problem is None:
+        raise InputError("run: name a problem file or a built-in problem (magshell examples lists them)")
+    else:
+        from magshell.problem import load
+
+        problem = load(given.problem)
+        directory = made(pathlib.Path(given.out))
+    with alone(directory), _terminating():
+        remove_temporaries(directory)
+        return _new(problem, directory) if given.resume is None else _resumed(directory)
+
+
+def _new(problem: Problem, directory: pathlib.Path) -> int:
+    """A run from the undeformed state."""
+    from magshell import results
     from magshell.problem.report import describe
-    from magshell.progress import ProgressDisplay
     from magshell.solver import solve
 
-    problem = load(given.problem)
     out = console()
     say(out, problem.title)
     say_doubts(out, describe(problem))
-    directory = made(pathlib.Path(given.out))
     _forget_earlier_run(out, directory)
+    results.make(problem, directory)
+    return _follow(out, problem, directory, lambda observers: solve(problem.model, problem.settings, observers))
+
+
+def _resumed(directory: pathlib.Path) -> int:
+    """A run from the last step of an earlier one."""
+    from magshell import results
+    from magshell.problem import load
+    from magshell.solver import resume
+
+    if not results.begun(directory) and (directory / results.PROBLEM).is_file():
+        return _new(load(directory / results.PROBLEM), directory)
+    found = results.read(directory)
+    out, path = console(), found.path
+    say(out, found.problem.title)
+    if path.converged and _is_complete(directory):
+        say(out, f"this run is finished: all {len(path.steps) - 1} steps and their files are in {directory}")
+        return SOLVED
+    for note in () if path.converged else found.notes:
+        say(out, f"warning: {note}: the steps from here are not those of a run that was never stopped", style="yellow")
+    return _follow(out, found.problem, directory, lambda observers: resume(path, observers))
+
+
+def _follow(
+    out: Console, problem: Problem, directory: pathlib.Path, followed: Callable[[Sequence[Observer]], Path]
+) -> int:
+    """Follow the path with the folder's writers watching, then write what only the end of a run has."""
+    from magshell.output.checkpoint import step_files
+    from magshell.output.pictures import draw_pictures
+    from magshell.output.summary import write_summary
+    from magshell.progress import ProgressDisplay
+    from magshell.results import writers
+
     progress = ProgressDisplay(out)
-    observers = [HistoryWriter(directory), VtuWriter(directory), CriticalWriter(directory), progress]
     try:
         with progress:
-            path = solve(problem.model, problem.settings, observers)
+            path = followed([*writers(problem, directory), progress])
     except SolveError as error:
         path = error.path
         complain(f"{problem.source}: not solved: {error.reason}")
-    except KeyboardInterrupt:
-        if progress.path is None or not progress.path.steps:
+    except BrokenPipeError:
+        raise
+    except (KeyboardInterrupt, OSError) as stop:
+        kept = len(step_files(directory)) - 1
+        if progress.path is None or kept < 0:
             raise
-        write_summary(progress.path, directory, reason="interrupted")
-        kept = len(progress.path.steps) - 1
-        complain(f"{problem.source}: interrupted; the {kept} steps that converged are in {directory}")
-        return INTERRUPTED
+        reason = _reason(stop)
+        with contextlib.suppress(OSError):
+            write_summary(progress.path, directory, reason)
+        complain(f"{problem.source}: {reason}; the {kept} steps that converged are in {directory}")
+        complain(f"go on with: magshell run --resume {shlex.quote(str(directory))}")
+        return NOT_SOLVED if isinstance(stop, OSError) else INTERRUPTED
     write_summary(path, directory)
     for name in problem.file.probes:
         u = path.probe(name).u[-1]
@@ -81,12 +146,52 @@ def run(given: argparse.Namespace) -> int:
     return SOLVED if path.converged else NOT_SOLVED
 
 
+class _Terminated(KeyboardInterrupt):
+    """SIGTERM, which a cluster sends some time before it kills."""
+
+
+@contextlib.contextmanager
+def _terminating() -> Iterator[None]:
+    """Hear SIGTERM as Ctrl-C, where signals can be heard."""
+
+    def raise_it(number: int, frame: FrameType | None) -> None:
+        raise _Terminated
+
+    try:
+        before = signal.signal(signal.SIGTERM, raise_it)
+    except ValueError:
+        yield
+        return
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _reason(stop: BaseException) -> str:
+    """Why a run was stopped from outside."""
+    if isinstance(stop, OSError):
+        return f"{stop.filename or 'a file'}: {stop.strerror or stop}"
+    return "terminated" if isinstance(stop, _Terminated) else "interrupted"
+
+
+def _is_complete(directory: pathlib.Path) -> bool:
+    """Whether a run has written also what comes last."""
+    try:
+        converged = json.loads((directory / "summary.json").read_text(encoding="utf-8"))["converged"]
+    except (OSError, ValueError, KeyError):
+        return False
+    return bool(converged) and all((directory / name).exists() for name in _AT_THE_END)
+
+
 def _forget_earlier_run(out: Console, directory: pathlib.Path) -> None:
     """Remove what only the end of a run writes, so that no run leaves the end of another; say so."""
+    from magshell.results import begun
+
     earlier = [file for name in _AT_THE_END if (file := directory / name).exists()]
     for file in earlier:
         file.unlink()
-    if earlier:
+    if earlier or begun(directory):
         say(out, f"the results of an earlier run in {directory} are replaced", style="yellow")
 
 

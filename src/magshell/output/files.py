@@ -6,6 +6,7 @@ import csv
 import io
 import os
 import pathlib
+import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
@@ -21,7 +22,11 @@ def naming(path: pathlib.Path) -> Iterator[None]:
         raise OSError(error.errno, error.strerror or str(error), str(path)) from error
 
 
-def write_atomically(path: pathlib.Path, content: bytes) -> None:
+# Least memory page: a write within one is seen whole or not at all, even if the process is killed in it.
+PAGE = 4096
+
+
+def write_atomically(path: pathlib.Path, content: bytes, durably: bool = False) -> None:
     """Write a file through a temporary one beside it, so that a reader sees the old or the new one.
 
     Parameters
@@ -29,6 +34,8 @@ def write_atomically(path: pathlib.Path, content: bytes) -> None:
     path : pathlib.Path
         Its folder is made if missing.
     content : bytes
+    durably : bool
+        Return only when the disk has it, so that it also outlives the machine.
 
     Raises
     ------
@@ -39,7 +46,11 @@ def write_atomically(path: pathlib.Path, content: bytes) -> None:
     with naming(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
-            temporary.write_bytes(content)
+            with open(temporary, "wb") as file:
+                file.write(content)
+                if durably:
+                    file.flush()
+                    os.fsync(file.fileno())
             os.replace(temporary, path)
         except BaseException:
             temporary.unlink(missing_ok=True)
@@ -47,22 +58,35 @@ def write_atomically(path: pathlib.Path, content: bytes) -> None:
 
 
 def append_line(path: pathlib.Path, line: str) -> None:
-    """Append a line in one write, so that it is on disk when this returns; a failed one is taken back.
+    """Append a line, so that it is there when this returns; a reader sees all of it or nothing.
+
+    Within a page of the file that is one write; over its end the file is written anew.
 
     Raises
     ------
     OSError
         The disk refuses; the message names the file, which is left as it was.
     """
+    content = line.encode()
     with naming(path), open(path, "ab", buffering=0) as file:
         before = file.tell()
-        content = line.encode()
+        if before // PAGE != (before + len(content) - 1) // PAGE:
+            write_atomically(path, path.read_bytes() + content)
+            return
         try:
             while content:
                 content = content[file.write(content) or 0 :]
         except BaseException:
             file.truncate(before)
             raise
+
+
+def remove_temporaries(directory: pathlib.Path) -> None:
+    """Remove what killed processes left of files that they were writing, in a folder and those in it."""
+    with naming(directory):
+        for left in directory.rglob(".*.tmp"):
+            if re.fullmatch(r"\..+\.\d+\.tmp", left.name):
+                left.unlink(missing_ok=True)
 
 
 def csv_line(values: Iterable[str]) -> str:

@@ -11,7 +11,7 @@ from magshell.solver.events import Observer
 
 if TYPE_CHECKING:
     from magshell.assembly import Discretisation
-    from magshell.solver.path import Step
+    from magshell.solver.path import Path, Step
     from magshell.solver.settings import Settings
 
 ABOUT = ("stage", "arc_length", "negative_pivots")
@@ -41,14 +41,25 @@ class HistoryWriter(Observer):
     def started(self, discretisation: Discretisation, settings: Settings) -> None:
         """Begin a new file with its heading."""
         self._model = discretisation.model
-        probes = [f"{name}.u{i}" for name in self._model.probe_nodes for i in (1, 2, 3)]
-        write_atomically(self.file, csv_line(["load_factor", "B1", "B2", "B3", *probes, *ABOUT]).encode())
+        write_atomically(self.file, self._heading().encode())
+
+    def resumed(self, path: Path) -> None:
+        """The rows of the steps so far, whatever the file was."""
+        self._model = path.model
+        write_atomically(self.file, "".join([self._heading(), *map(self._row, path.steps)]).encode())
 
     def converged(self, step: Step) -> None:
         """Append one row."""
+        append_line(self.file, self._row(step))
+
+    def _heading(self) -> str:
+        probes = [f"{name}.u{i}" for name in self._model.probe_nodes for i in (1, 2, 3)]
+        return csv_line(["load_factor", "B1", "B2", "B3", *probes, *ABOUT])
+
+    def _row(self, step: Step) -> str:
         row = [step.load_factor, *step.flux_density]
         for node in self._model.probe_nodes.values():
             row += step.state.u[node].tolist()
         pivots = "" if step.negative_pivots is None else str(step.negative_pivots)
         numbers = (repr(float(value)) for value in row)
-        append_line(self.file, csv_line([*numbers, str(step.stage + 1), repr(float(step.arc_length)), pivots]))
+        return csv_line([*numbers, str(step.stage + 1), repr(float(step.arc_length)), pivots])

@@ -1,4 +1,4 @@
-"""`summary.json`: how a run ended, in a form that scripts read."""
+"""`summary.json`: how far a run is, and how it ended, in a form that scripts read."""
 
 from __future__ import annotations
 
@@ -11,10 +11,48 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from magshell.output.files import write_atomically
+from magshell.output.files import naming, write_atomically
+from magshell.solver.events import Observer
 
 if TYPE_CHECKING:
+    from magshell.assembly import Discretisation
     from magshell.solver.path import Path
+    from magshell.solver.settings import Settings
+
+NAME = "summary.json"
+
+
+class SummaryWriter(Observer):
+    """Keep `summary.json` true while a run goes on: not converged, with the reason `running`.
+
+    Parameters
+    ----------
+    directory : path
+        Folder of the file; one of an earlier run is removed when the solve starts.
+
+    Raises
+    ------
+    OSError
+        The disk refuses; the message names the file.
+    """
+
+    def __init__(self, directory: str | os.PathLike[str]) -> None:
+        self.directory = pathlib.Path(directory)
+
+    def started(self, discretisation: Discretisation, settings: Settings) -> None:
+        """Forget an earlier run."""
+        file = self.directory / NAME
+        with naming(file):
+            file.unlink(missing_ok=True)
+
+    def resumed(self, path: Path) -> None:
+        """Say that the run goes on, if it has not ended."""
+        if not path.converged:
+            self.kept(path)
+
+    def kept(self, path: Path) -> None:
+        """Write what there is so far."""
+        write_summary(path, self.directory, reason="running")
 
 
 def write_summary(path: Path, directory: str | os.PathLike[str], reason: str | None = None) -> pathlib.Path:
@@ -39,7 +77,7 @@ def write_summary(path: Path, directory: str | os.PathLike[str], reason: str | N
     OSError
         The disk refuses; the message names the file.
     """
-    file = pathlib.Path(directory) / "summary.json"
+    file = pathlib.Path(directory) / NAME
     content = path.summary if reason is None else {**path.summary, "reason": reason}
     text = json.dumps(_plain(content), indent=2, ensure_ascii=False, allow_nan=False)
     write_atomically(file, text.encode() + b"\n")

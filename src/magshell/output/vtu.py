@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import pathlib
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import quoteattr
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from magshell.solver.settings import Settings
 
 VTK_QUADRATIC_QUAD = 23
+END = b"</VTKFile>\n"
 
 
 class VtuWriter(Observer):
@@ -58,18 +59,49 @@ class VtuWriter(Observer):
         """Begin a new series."""
         self._discretisation = discretisation
         self._written: list[tuple[float, str]] = []
-        folder = self.file.parent / self._folder
-        with naming(folder):
+        with naming(self.file):
             self.file.unlink(missing_ok=True)
-            for old in folder.glob("step-[0-9][0-9][0-9][0-9]*.vtu"):
-                old.unlink(missing_ok=True)
+        self._keep_only(())
+
+    def resumed(self, path: Path) -> None:
+        """The steps so far; files of theirs that are there and whole are left as they are."""
+        self._discretisation = path.discretisation
+        self._written = [(step.stage + step.load_factor, self._name(step)) for step in path.steps]
+        self._keep_only({name for _, name in self._written})
+        for step in path.steps:
+            if not _is_whole(self.file.parent / self._name(step)):
+                self._write(step)
+        write_atomically(self.file, _pvd(self._written))
 
     def converged(self, step: Step) -> None:
         """Write the step, then the series with it."""
-        name = f"{self._folder}/step-{step.number:04d}.vtu"
-        write_atomically(self.file.parent / name, vtu(grid(self._discretisation, step)))
-        self._written.append((step.stage + step.load_factor, name))
+        self._write(step)
+        self._written.append((step.stage + step.load_factor, self._name(step)))
         write_atomically(self.file, _pvd(self._written))
+
+    def _name(self, step: Step) -> str:
+        return f"{self._folder}/step-{step.number:04d}.vtu"
+
+    def _write(self, step: Step) -> None:
+        write_atomically(self.file.parent / self._name(step), vtu(grid(self._discretisation, step)))
+
+    def _keep_only(self, names: Collection[str]) -> None:
+        """Remove the other step files of the folder."""
+        folder = self.file.parent / self._folder
+        with naming(folder):
+            for old in folder.glob("step-[0-9][0-9][0-9][0-9]*.vtu"):
+                if f"{self._folder}/{old.name}" not in names:
+                    old.unlink(missing_ok=True)
+
+
+def _is_whole(file: pathlib.Path) -> bool:
+    """Whether a VTU file is there to its end (one that a disk lost on a power failure is not)."""
+    try:
+        with open(file, "rb") as opened:
+            opened.seek(-min(len(END), file.stat().st_size), os.SEEK_END)
+            return opened.read() == END
+    except OSError:
+        return False
 
 
 def save_path(path: Path, file: str | os.PathLike[str]) -> None:

@@ -1,0 +1,249 @@
+"""`checkpoint/step-0007.npz`: one file per converged step, with all that going on from it needs.
+
+The files are zipped NumPy arrays without pickles; docs/results.md lists them. All files of a folder together are the
+path; a file alone is its own step, so writing it costs the same however long the path is.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import pathlib
+import re
+import zipfile
+import zlib
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+import magshell
+from magshell.errors import InputError
+from magshell.output.files import naming, write_atomically
+from magshell.shell.state import State
+from magshell.solver.balance import Balance
+from magshell.solver.critical import CriticalPoint
+from magshell.solver.events import Observer
+from magshell.solver.path import Path, Step
+from magshell.solver.track import Slope
+from magshell.solver.waypoint import Waypoint
+
+if TYPE_CHECKING:
+    from magshell.assembly import Discretisation
+    from magshell.solver.settings import Settings
+
+FORMAT, VERSION = "magshell checkpoint", 1
+FOLDER = "checkpoint"
+UNKNOWN = -1
+# What reading a torn zip file may raise.
+DAMAGES = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError)
+
+
+class Origin(NamedTuple):
+    """What a step was made with.
+
+    Attributes
+    ----------
+    magshell : str
+        Version of this package.
+    problem : str
+        Digest of the problem (`magshell.results.digest`).
+    settings : dict of str
+        Those of the solver.
+    """
+
+    magshell: str
+    problem: str
+    settings: dict[str, Any]
+
+
+class CheckpointWriter(Observer):
+    """Write every converged step before anyone else is told of it, so that it outlives whatever happens next.
+
+    Parameters
+    ----------
+    directory : path
+        The results folder. Steps of an earlier run in its `checkpoint` are removed when a new solve starts.
+    problem : str
+        Digest of the problem.
+
+    Raises
+    ------
+    OSError
+        The disk refuses; the message names the file, and the steps before are left as they were.
+    """
+
+    def __init__(self, directory: str | os.PathLike[str], problem: str) -> None:
+        self.folder, self._problem = pathlib.Path(directory) / FOLDER, problem
+
+    def started(self, discretisation: Discretisation, settings: Settings) -> None:
+        """Forget an earlier run."""
+        forget(self.folder.parent)
+
+    def resumed(self, path: Path) -> None:
+        """The steps so far are there."""
+
+    def kept(self, path: Path) -> None:
+        """Write the step that has just converged."""
+        waypoint = path.trail[-1]
+        origin = Origin(magshell.__version__, self._problem, asdict(path.settings))
+        write_atomically(self.folder / step_name(waypoint.step.number), content(waypoint, origin), durably=True)
+
+
+def step_files(directory: str | os.PathLike[str]) -> list[pathlib.Path]:
+    """The files of a results folder's checkpoint, by the numbers of their steps."""
+    files = pathlib.Path(directory, FOLDER).glob("step-*.npz")
+    return sorted((file for file in files if _number(file) is not None), key=lambda file: _number(file) or 0)
+
+
+def forget(directory: str | os.PathLike[str]) -> None:
+    """Remove the steps of a results folder, the last first: what is left is a path whenever this is broken off."""
+    with naming(pathlib.Path(directory, FOLDER)):
+        for file in reversed(step_files(directory)):
+            file.unlink()
+
+
+def read_step(file: pathlib.Path) -> tuple[Waypoint, Origin]:
+    """A converged step and what it was made with.
+
+    Raises
+    ------
+    InputError
+        The file is damaged, of a newer version or no checkpoint; the message says what to do.
+    """
+    number = _number(file) or 0
+    try:
+        arrays = _arrays(file)
+        if str(arrays.get("format")) != FORMAT:
+            raise InputError(f"{file}: is not a checkpoint of magshell. {remedy(number)}")
+        if (version := int(arrays["version"])) > VERSION:
+            raise InputError(
+                f"{file}: has version {version} of the format, this magshell reads up to {VERSION}; update it"
+            )
+        waypoint, origin = _waypoint(arrays), _origin(arrays)
+    except InputError:
+        raise
+    except OSError as error:
+        raise InputError(f"{file}: cannot be read: {error.strerror or error}") from None
+    except (*DAMAGES, KeyError, TypeError, ValueError) as error:
+        raise InputError(f"{file}: is damaged ({type(error).__name__}: {error}). {remedy(number)}") from None
+    if waypoint.step.number != number:
+        raise InputError(f"{file}: holds step {waypoint.step.number}; it was renamed. {remedy(number)}")
+    return waypoint, origin
+
+
+def remedy(number: int) -> str:
+    """What to do about a step that cannot be used."""
+    if not number:
+        return "Without the first step nothing can be resumed; run the problem anew with --out"
+    return f"Delete it and the steps after it; `magshell run --resume` then goes on from step {number - 1}"
+
+
+def content(waypoint: Waypoint, origin: Origin) -> bytes:
+    """The bytes of a file."""
+    step, slope = waypoint.step, waypoint.slope
+    arrays: dict[str, Any] = {
+        "format": FORMAT,
+        "version": VERSION,
+        "magshell": origin.magshell,
+        "problem": origin.problem,
+        "settings": json.dumps(origin.settings),
+        "number": step.number,
+        "stage": step.stage,
+        "load_factor": step.load_factor,
+        "arc_length": step.arc_length,
+        "iterations": step.iterations,
+        "residual": step.residual,
+        "flux_density": step.flux_density,
+        "loads": step.loads,
+        "negative_pivots": _counted(step.negative_pivots),
+        **step.state._asdict(),
+        "slope_increment": slope.increment,
+        "slope_alpha": slope.d_alpha,
+        "slope_load": slope.load,
+        "goal": waypoint.goal,
+        "taken": waypoint.taken,
+        "by_arc": waypoint.by_arc,
+        "radius": waypoint.radius,
+        "cuts": waypoint.cuts,
+        "solves": waypoint.solves,
+        "cpu_seconds": waypoint.cpu_seconds,
+        "critical_points": len(waypoint.critical_points),
+    }
+    if step.balance is not None:
+        arrays |= {f"balance_{name}": value for name, value in step.balance._asdict().items()}
+    for number, point in enumerate(waypoint.critical_points, start=1):
+        own = point._asdict()
+        own |= own.pop("state")._asdict() | {"negative_pivots": [_counted(one) for one in point.negative_pivots]}
+        arrays |= {f"critical{number}_{name}": value for name, value in own.items()}
+    file = io.BytesIO()
+    np.savez(file, **arrays)
+    return file.getvalue()
+
+
+def _arrays(file: pathlib.Path) -> dict[str, np.ndarray]:
+    """The arrays of a file; each is read to its end, where its checksum is compared."""
+    with zipfile.ZipFile(file) as archive:
+        return {
+            name.removesuffix(".npy"): np.lib.format.read_array(io.BytesIO(archive.read(name)), allow_pickle=False)
+            for name in archive.namelist()
+        }
+
+
+def _waypoint(arrays: Mapping[str, np.ndarray]) -> Waypoint:
+    step = Step(
+        int(arrays["number"]), float(arrays["load_factor"]), _state(arrays, ""), int(arrays["iterations"]),
+        float(arrays["residual"]), _balance(arrays), float(arrays["arc_length"]), int(arrays["stage"]),
+        arrays["flux_density"], arrays["loads"], _known(arrays["negative_pivots"]),
+    )  # fmt: skip
+    slope = Slope(arrays["slope_increment"], arrays["slope_alpha"], float(arrays["slope_load"]))
+    critical = tuple(_critical(arrays, f"critical{number + 1}_") for number in range(int(arrays["critical_points"])))
+    return Waypoint(
+        step, critical, slope, int(arrays["goal"]), int(arrays["taken"]), bool(arrays["by_arc"]),
+        float(arrays["radius"]), int(arrays["cuts"]), int(arrays["solves"]), float(arrays["cpu_seconds"]),
+    )  # fmt: skip
+
+
+def _origin(arrays: Mapping[str, np.ndarray]) -> Origin:
+    return Origin(str(arrays["magshell"]), str(arrays["problem"]), json.loads(str(arrays["settings"])))
+
+
+def _state(arrays: Mapping[str, np.ndarray], prefix: str) -> State:
+    return State(*(arrays[prefix + name] for name in State._fields))
+
+
+def _balance(arrays: Mapping[str, np.ndarray]) -> Balance | None:
+    if "balance_force_imbalance" not in arrays:
+        return None
+    values = [arrays[f"balance_{name}"] for name in Balance._fields]
+    own: list[Any] = [value if value.ndim else float(value) for value in values]
+    return Balance(*own)
+
+
+def _critical(arrays: Mapping[str, np.ndarray], prefix: str) -> CriticalPoint:
+    own = {name: arrays[prefix + name] for name in CriticalPoint._fields if name != "state"}
+    before, after = own["negative_pivots"]
+    return CriticalPoint(
+        int(own["number"]), str(own["kind"]), int(own["stage"]), float(own["load_factor"]), own["flux_density"],
+        float(own["arc_length"]), _state(arrays, prefix), own["mode"], (_known(before), _known(after)),
+    )  # fmt: skip
+
+
+def _counted(pivots: int | None) -> int:
+    return UNKNOWN if pivots is None else pivots
+
+
+def _known(pivots: np.ndarray) -> int | None:
+    return None if pivots == UNKNOWN else int(pivots)
+
+
+def step_name(number: int) -> str:
+    """Name of a step's file."""
+    return f"step-{number:04d}.npz"
+
+
+def _number(file: pathlib.Path) -> int | None:
+    found = re.fullmatch(r"step-(\d{4,})\.npz", file.name)
+    return int(found[1]) if found else None

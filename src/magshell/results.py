@@ -1,0 +1,152 @@
+"""Results folders: made from a problem, and read back as a problem with its path.
+
+A folder runs by itself: it holds the problem file and copies of the files that it names, so that a run can go on in
+it, and its results can be looked at, wherever it is.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import pathlib
+import tomllib
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from magshell import __version__, problem
+from magshell.errors import InputError
+from magshell.output import checkpoint
+from magshell.output.checkpoint import CheckpointWriter, Origin
+from magshell.output.critical import CriticalWriter
+from magshell.output.files import naming, write_atomically
+from magshell.output.history import HistoryWriter
+from magshell.output.summary import SummaryWriter
+from magshell.output.vtu import VtuWriter
+from magshell.problem.building import Problem
+from magshell.solver import Observer, Path
+from magshell.solver.waypoint import Waypoint, path_through
+
+PROBLEM = "problem.toml"
+# Tables and keys of a problem that its path does not depend on, or may change on the way.
+FREE = ("title", "description", "solver")
+
+
+@dataclass(frozen=True, eq=False)
+class Results:
+    """A results folder.
+
+    Attributes
+    ----------
+    problem : Problem
+    path : Path
+        All converged steps; `magshell.solver.resume` goes on with it.
+    notes : list of str
+        Why going on would not give the same bits as the run so far.
+    """
+
+    problem: Problem
+    path: Path
+    notes: list[str]
+
+
+def read(directory: str | os.PathLike[str]) -> Results:
+    """Read a results folder, also while a run writes into it.
+
+    Parameters
+    ----------
+    directory : path
+        As `magshell run --out` made it.
+
+    Raises
+    ------
+    InputError
+        No results folder, no converged step in it, a step that cannot be read, or steps of another problem; the message
+        names the file and says what to do.
+    """
+    folder = pathlib.Path(directory)
+    files = checkpoint.step_files(folder)
+    if not (folder / PROBLEM).is_file():
+        raise InputError(f"{folder}: is not a results folder; one that `magshell run --out` made has a {PROBLEM}")
+    if not files:
+        raise InputError(f"{folder}: no step has converged there yet; `magshell run --resume` begins it")
+    found = problem.load(folder / PROBLEM)
+    origins: list[Origin] = []
+    path = path_through(found.model, found.settings, _waypoints(found, files, origins))
+    return Results(found, path, _notes(path, origins[-1]))
+
+
+def begun(directory: str | os.PathLike[str]) -> bool:
+    """Whether a step has converged in a folder."""
+    return bool(checkpoint.step_files(directory))
+
+
+def make(source: Problem, directory: pathlib.Path) -> None:
+    """Make a folder (which exists) ready for a run: steps of an earlier one are removed, the problem is copied into it.
+
+    Raises
+    ------
+    InputError
+        The folder holds somebody's own problem file of that name.
+    OSError
+        The disk refuses; the message names the file.
+    """
+    copy = directory / PROBLEM
+    content = source.text.encode()
+    if copy.exists() and copy.read_bytes() != content and not (directory / checkpoint.FOLDER).is_dir():
+        raise InputError(f"--out {directory}: the {PROBLEM} there is not of an earlier run; name another folder")
+    with naming(directory / checkpoint.FOLDER):
+        (directory / checkpoint.FOLDER).mkdir(exist_ok=True)
+    checkpoint.forget(directory)
+    write_atomically(copy, content)
+
+
+def writers(source: Problem, directory: pathlib.Path) -> list[Observer]:
+    """What writes the files of a results folder; the checkpoint first, so that it has all that the others show."""
+    return [
+        CheckpointWriter(directory, digest(source)),
+        SummaryWriter(directory),
+        HistoryWriter(directory),
+        VtuWriter(directory),
+        CriticalWriter(directory),
+    ]
+
+
+def digest(source: Problem) -> str:
+    """Of all in a problem that its path depends on: the same for a problem and its copy in a results folder."""
+    content = {key: value for key, value in tomllib.loads(source.text).items() if key not in FREE}
+    text = json.dumps(content, sort_keys=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _waypoints(source: Problem, files: Iterable[pathlib.Path], origins: list[Origin]) -> Iterator[Waypoint]:
+    """The steps in order, each checked; what they were made with goes into a list."""
+    own = digest(source)
+    mesh, modes = source.model.shell.mesh, source.model.shell.element.vectors
+    shapes = (len(mesh.points), 3), (len(mesh.elements), modes, 3)
+    for number, file in enumerate(files):
+        waypoint, origin = checkpoint.read_step(file)
+        if waypoint.step.number != number:
+            raise InputError(f"{file.with_name(checkpoint.step_name(number))}: is missing. {checkpoint.remedy(number)}")
+        if origin.problem != own:
+            raise InputError(
+                f"{file.parent.parent / PROBLEM}: is not the problem of the steps in {file.parent}, apart from its "
+                "[solver]. Undo what was changed in it, or run it anew with --out"
+            )
+        if (waypoint.step.state.u.shape, waypoint.step.state.alpha.shape) != shapes:
+            raise InputError(
+                f"{file}: is of another mesh than {PROBLEM} makes now (magshell {origin.magshell} made the step, this "
+                f"is {__version__}); run it anew with --out"
+            )
+        origins.append(origin)
+        yield waypoint
+
+
+def _notes(path: Path, origin: Origin) -> list[str]:
+    notes = []
+    if origin.magshell != __version__:
+        notes.append(f"the last step was made by magshell {origin.magshell}, this is {__version__}")
+    changed = [name for name, value in origin.settings.items() if getattr(path.settings, name, None) != value]
+    if changed:
+        notes.append(f"the solver's settings have changed since the last step: {', '.join(changed)}")
+    return notes
