@@ -46,7 +46,7 @@ BROKEN = [
     Broken("generator of another type", '"rectangle"', "3", "mesh.generator", ("'3'", "rectangle")),
     Broken("unknown law", '"micropolar-neo-hookean"', '"neo-hookean"', "material.law", ("'neo-hookean'", "micropolar-neo-hookean")),
     Broken("unknown support", '"clamp"', '"clamped"', "supports[0].kind", ("'clamped'", "'clamp'")),
-    Broken("unknown remanence", '"constant"', '"radial"', "remanence[0].kind", ("'radial'", "meridional")),
+    Broken("unknown remanence", '"constant"', '"spiral"', "remanence[0].kind", ("'spiral'", "meridional")),
     Broken("unknown coupling", "stops", 'coupling = "cuople"\nstops', "field.coupling", ("'cuople'", "'couple'")),
     # units
     Broken("wrong unit", '"1 mm"\n\n[mat', '"0.9 kPa"\n\n[mat', "shell.thickness", ("0.9 kPa", "stress", "length", "mm")),
