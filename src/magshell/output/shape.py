@@ -84,7 +84,7 @@ def draw_shape(
     figure.text(0.035, 0.94, title, va="center", **(TEXT | {"fontsize": 20}))
     if arrow is not None:
         _label_arrow(axes, camera.on_picture(arrow))
-    _triad(axes, camera.axes)
+    triad(axes, camera.axes)
     return deliver(figure, file)
 
 
@@ -132,7 +132,7 @@ def _label_arrow(axes: Any, ends: FloatArray) -> None:
     axes.annotate(r"$B^\mathrm{ext}$", head + beyond, xycoords="axes fraction", color=ACCENT, fontsize=16, **place)
 
 
-def _triad(axes: Any, view: FloatArray) -> None:
+def triad(axes: Any, view: FloatArray) -> None:
     """The directions X1, X2, X3 in the lower left corner."""
     origin, length, beyond = np.array([62.0, 48.0]), 34.0, 11.0
     line = {"arrowstyle": "-|>", "color": GREY, "linewidth": 1.3, "shrinkA": 0, "shrinkB": 0}
