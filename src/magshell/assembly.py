@@ -282,13 +282,15 @@ class Discretisation:
     def _relative_residual(self, loads: FloatArray) -> dict[str, float]:
         """Norms by kind above their round-off, over the elements' forces and the loads (nodes, 10) of that kind.
 
-        α has the unit of w (both work on directors) and is measured against the same forces.
+        α has the unit of w (both work on directors) and is measured against the same forces. The forces of u vanish in
+        pure bending; they count for no less than the moments over the body's size.
         """
         residual = np.where(self.free, self._out.residual, 0.0)
         norms = [float(np.linalg.norm(residual[:, columns])) for columns in COLUMNS.values()]
         norms.append(float(np.sqrt(self._out.enhancement_residual[0])))
         squares = np.array([np.sum(loads[:, columns] ** 2) for columns in COLUMNS.values()])
         scales = np.sqrt(self._out.scale.sum(axis=1) + squares)
+        scales[0] = max(scales[0], scales[1] / self.mesh.size, scales[3] / self.mesh.size)
         above = np.maximum(np.array(norms) - self._noise, 0.0)
         relative = np.divide(above, scales[[0, 1, 2, 3, 1]], out=above.copy(), where=above > 0.0)
         return dict(zip(KINDS, relative.tolist(), strict=True))

@@ -1,4 +1,4 @@
-"""A very thin shell on a graded mesh: Newton's method stalls at round-off above the tolerance."""
+"""Where round-off is what is left: a very thin shell on a graded mesh, and forces that vanish in pure bending."""
 
 from __future__ import annotations
 
@@ -47,6 +47,19 @@ def test_a_strip_two_thousand_times_as_long_as_thick():
     u1, u3 = elastica()
     assert path.probe("end").u3[-1] == pytest.approx(u3, rel=2e-3)
     assert path.probe("end").u1[-1] == pytest.approx(u1, rel=5e-3)
+
+
+def test_pure_bending_on_a_mesh_of_more_elements_than_needed():
+    """A strip rolled into a circle by a moment: the resultants of u vanish, and are no measure of their own residual."""
+    young, length, thickness = 1.2e6, 12.0, 0.1
+    material = ms.MicropolarStVenantKirchhoff(young / 2, 0.0, 0.0, 0.0)
+    shell = ms.Shell(ms.mesh.rectangle(length, 1.0, (32, 1)), thickness, material, micro_rotation=False)
+    moment = 2.0 * np.pi * young * thickness**3 / 12.0 / length
+    model = ms.Model(
+        shell, [ms.Clamp("left")], loads=[ms.Moment("right", (0, -moment, 0))], probes={"end": (length, 0, 0)}
+    )
+    end = ms.solve(model).probe("end").u[-1]
+    np.testing.assert_allclose(end, [-length, 0.0, 0.0], atol=2e-3 * length)
 
 
 def test_only_an_iteration_that_has_come_close_stalls():
