@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from importlib.metadata import version
 
-from magshell.cli import buckling, check, examples, reproduce, run, sweep
+from magshell.cli import buckling, check, examples, reproduce, run, show, sweep, view
 from magshell.cli.console import complain
 from magshell.cli.status import BAD_INPUT, INTERRUPTED, NOT_SOLVED
 from magshell.errors import InputError
@@ -17,8 +17,10 @@ COMMANDS = {
     "run": run,
     "buckling": buckling,
     "check": check,
+    "show": show,
     "examples": examples,
     "sweep": sweep,
+    "view": view,
     "reproduce": reproduce,
 }
 
@@ -28,7 +30,9 @@ examples:
   magshell run strip-10 --out results     solve one of them
   magshell examples --copy gripper        copy one to change it
   magshell check gripper.toml             see what was understood, without solving
+  magshell show gripper.toml              draw it: mesh, remanence, field, supports
   magshell run gripper.toml --out results
+  magshell view results                   the results as a page for a browser
   magshell buckling my-plate.toml --out results
   magshell reproduce --out reproduction   the source paper's examples beside what it says
 

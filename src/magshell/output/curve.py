@@ -3,23 +3,29 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.output.style import COLOURS, DPI, TEXT, TICKS, deliver
+from magshell.output.style import ACCENT, COLOURS, DPI, TEXT, TICKS, deliver
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from PIL.Image import Image
 
-    from magshell.solver.path import Path
+    from magshell.solver.critical import CriticalPoint
+    from magshell.solver.path import Path, Step
 
 NEGLIGIBLE = 0.01
 FIELD = r"$|B^\mathrm{ext}|$ (mT)"
 LOAD = r"$10^3\,|B^\mathrm{ext}|\,|B^\mathrm{rem}|\,/\,(\mu\,\mu_0)$"
+LOAD_TEXT = "10³ |B| |Bʳᵉᵐ| / (µ µ₀)"
+CRITICAL: dict[str, Any] = {
+    "linestyle": "none", "marker": "D", "markersize": 7, "color": ACCENT, "markeredgecolor": "white",
+}  # fmt: skip
 LINES = (("--", "s"), (":", "^"), ("-", "o"))
 
 
@@ -29,7 +35,7 @@ def draw_curve(path: Path, file: str | os.PathLike[str] | None = "curve.png") ->
     The field is given in mT below, negative where it is reversed, and above as the load 10³ |Bext| |Brem| / (mu mu0)
     of the literature, with the largest |Brem| of the shell. Components below 1 % of the largest are left out. Without
     probes the largest displacement anywhere is drawn; where there is no field, or one that turns, the load factor
-    (plus the number of the stages before) takes its place.
+    (plus the number of the stages before) takes its place. Limit points and bifurcations are marked with diamonds.
 
     Parameters
     ----------
@@ -59,10 +65,17 @@ def curve_figure(path: Path) -> Figure:
     axes = figure.subplots()
     field, x = abscissa(path)
     unstable = np.array([bool(step.negative_pivots) for step in path.steps])
-    for label, values, style in sorted(curves(path), key=lambda curve: -curve[1][-1]):
+    _, critical = abscissa(path, path.critical_points)
+    every = displacements(path, [*path.steps, *path.critical_points])
+    for curve in sorted(every, key=lambda curve: -curve.values[len(x) - 1]):
+        values, at_critical = curve.values[: len(x)], curve.values[len(x) :]
+        label, style = curve.label, curve.style
         axes.plot(x, 1e3 * values, label=label, markersize=5, markeredgecolor="white", markeredgewidth=0.6, **style)
+        axes.plot(critical, 1e3 * at_critical, zorder=4, **CRITICAL)
         hollow = {"linestyle": "none", "marker": style["marker"], "color": style["color"], "markersize": 5}
         axes.plot(x[unstable], 1e3 * values[unstable], markerfacecolor="white", **hollow)
+    if len(critical):
+        axes.plot([], [], label="critical point", **CRITICAL)
     if unstable.any():
         axes.plot([], [], "o", color="#6b7280", markerfacecolor="white", markersize=6, label="unstable")
     axes.axhline(0, color="#9aa3ad", linewidth=0.8, zorder=1)
@@ -78,31 +91,76 @@ def curve_figure(path: Path) -> Figure:
     return figure
 
 
-def abscissa(path: Path) -> tuple[bool, FloatArray]:
-    """Whether the field is what steps are drawn against, and it (mT, negative where reversed) or the load parameter."""
+def abscissa(path: Path, points: Sequence[Step | CriticalPoint] | None = None) -> tuple[bool, FloatArray]:
+    """Whether the field is what steps are drawn against, and it (mT, negative where reversed) or the load parameter.
+
+    Parameters
+    ----------
+    path : Path
+    points : sequence of Step or CriticalPoint, optional
+        Where; at the steps of the path without it.
+    """
     field = path.model.field
+    points = path.steps if points is None else points
     if field.magnitude == 0.0 or field.rotation is not None:
-        return False, np.array([step.stage + step.load_factor for step in path.steps])
+        return False, np.array([point.stage + point.load_factor for point in points])
     along = field.vector / field.magnitude
-    return True, np.array([1e3 * float(step.flux_density @ along) for step in path.steps])
+    return True, np.array([1e3 * float(point.flux_density @ along) for point in points])
 
 
-def curves(path: Path) -> list[tuple[str, FloatArray, dict[str, Any]]]:
-    """Label, values in m and style of every curve worth drawing."""
-    states = [step.state for step in path.steps]
+class Displacement(NamedTuple):
+    """A curve worth drawing.
+
+    Attributes
+    ----------
+    name : str
+        The probe, as the user calls it.
+    component : int or None
+        1 to 3; None for the largest |u| of all nodes.
+    values : FloatArray, shape (points,)
+        m.
+    style : dict
+        For matplotlib: color, linestyle, marker, linewidth.
+    """
+
+    name: str
+    component: int | None
+    values: FloatArray
+    style: dict[str, Any]
+
+    @property
+    def label(self) -> str:
+        """For matplotlib, with mathematics."""
+        return "largest $|u|$" if self.component is None else f"{_literal(self.name)}  $u_{self.component}$"
+
+    @property
+    def letter(self) -> str:
+        """What is drawn, as text."""
+        return "|u|" if self.component is None else f"u{'₁₂₃'[self.component - 1]}"
+
+
+def displacements(path: Path, points: Sequence[Step | CriticalPoint] | None = None) -> list[Displacement]:
+    """Every curve worth drawing, at points of the path or at its steps."""
+    states = [point.state for point in (path.steps if points is None else points)]
     probes = {name: np.array([state.u[node] for state in states]) for name, node in path.model.probe_nodes.items()}
     if not probes:
         largest = np.array([np.linalg.norm(state.u, axis=1).max() for state in states])
-        return [("largest $|u|$", largest, {"color": COLOURS[0], "marker": "o", "linewidth": 2.0})]
+        style = {"color": COLOURS[0], "linestyle": "-", "marker": "o", "linewidth": 2.0}
+        return [Displacement("largest", None, largest, style)]
     threshold = NEGLIGIBLE * max(np.abs(u).max() for u in probes.values())
-    curves = []
+    found = []
     for number, (name, u) in enumerate(probes.items()):
         for i, (line, marker) in enumerate(LINES):
             if np.abs(u[:, i]).max() >= threshold:
                 colour = COLOURS[(i if len(probes) == 1 else number) % len(COLOURS)]
                 style = {"color": colour, "linestyle": line, "marker": marker, "linewidth": 2.0}
-                curves.append((f"{_literal(name)}  $u_{i + 1}$", u[:, i], style))
-    return curves
+                found.append(Displacement(name, i + 1, u[:, i], style))
+    return found
+
+
+def curves(path: Path) -> list[tuple[str, FloatArray, dict[str, Any]]]:
+    """Label, values in m and style of every curve worth drawing."""
+    return [(curve.label, curve.values, curve.style) for curve in displacements(path)]
 
 
 def _literal(name: str) -> str:

@@ -1,0 +1,7 @@
+"""One self-contained HTML page of a path: the shape in three dimensions beside the curves."""
+
+from __future__ import annotations
+
+from magshell.output.page.page import page, write_page
+
+__all__ = ["page", "write_page"]

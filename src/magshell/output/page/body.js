@@ -1,0 +1,139 @@
+// The curved elements as small triangles and lines, interpolated between the nodes by the elements' own functions.
+
+class Body {
+  constructor(mesh) {
+    this.reference = stored("points", Float32Array);
+    this.kinds = mesh.kinds.map((kind, i) => ({
+      ...kind,
+      elements: stored(`elements-${i}`, Uint32Array),
+      numbers: stored(`numbers-${i}`, Uint32Array),
+    }));
+    this.edges = stored("edges", Uint32Array);
+    this.outline = stored("outline", Uint32Array);
+    this.along = mesh.along; // functions of an edge's nodes (end, end, middle) at points along it
+    const size = this.kinds.reduce((sum, kind) => sum + kind.numbers.length * kind.N.length, 0);
+    this.positions = new Float32Array(3 * size);
+    this.normals = new Float32Array(3 * size);
+    this.values = new Float32Array(size);
+    this.triangles = this.joined();
+  }
+
+  joined() {
+    const lists = [];
+    let first = 0;
+    for (const kind of this.kinds) {
+      const list = new Uint32Array(3 * kind.triangles.length * kind.numbers.length);
+      const pattern = kind.triangles.flat();
+      for (let e = 0; e < kind.numbers.length; e++) {
+        for (let i = 0; i < pattern.length; i++) list[e * pattern.length + i] = first + pattern[i];
+        first += kind.N.length;
+      }
+      lists.push(list);
+    }
+    const all = new Uint32Array(lists.reduce((sum, list) => sum + list.length, 0));
+    let at = 0;
+    for (const list of lists) {
+      all.set(list, at);
+      at += list.length;
+    }
+    return all;
+  }
+
+  // Nodal positions (flat) at displacements, three columns.
+  moved(columns) {
+    const moved = new Float32Array(this.reference);
+    for (let k = 0; k < 3; k++) for (let i = 0; i < columns[k].length; i++) moved[3 * i + k] += columns[k][i] || 0;
+    return moved;
+  }
+
+  // Points and unit normals of the surface through nodes at these positions.
+  place(nodal) {
+    const { positions, normals } = this;
+    let at = 0;
+    for (const { elements, numbers, N, N1, N2 } of this.kinds) {
+      const nodes = N[0].length;
+      const x = new Float64Array(3 * nodes);
+      for (let e = 0; e < numbers.length; e++) {
+        for (let n = 0; n < nodes; n++) {
+          const node = 3 * elements[e * nodes + n];
+          for (let k = 0; k < 3; k++) x[3 * n + k] = nodal[node + k];
+        }
+        for (let m = 0; m < N.length; m++, at += 3) {
+          let px = 0, py = 0, pz = 0, ax = 0, ay = 0, az = 0, bx = 0, by = 0, bz = 0;
+          const f = N[m], f1 = N1[m], f2 = N2[m];
+          for (let n = 0, i = 0; n < nodes; n++, i += 3) {
+            const u = x[i], v = x[i + 1], w = x[i + 2];
+            px += f[n] * u; py += f[n] * v; pz += f[n] * w;
+            ax += f1[n] * u; ay += f1[n] * v; az += f1[n] * w;
+            bx += f2[n] * u; by += f2[n] * v; bz += f2[n] * w;
+          }
+          const nx = ay * bz - az * by, ny = az * bx - ax * bz, nz = ax * by - ay * bx;
+          const length = Math.sqrt(nx * nx + ny * ny + nz * nz) || 1;
+          positions[at] = px; positions[at + 1] = py; positions[at + 2] = pz;
+          normals[at] = nx / length; normals[at + 1] = ny / length; normals[at + 2] = nz / length;
+        }
+      }
+    }
+  }
+
+  // Values of nodes or elements at the points of the surface; 3e38 where there is none.
+  paint(values, where) {
+    let at = 0;
+    for (const { elements, numbers, N } of this.kinds) {
+      const nodes = N[0].length;
+      for (let e = 0; e < numbers.length; e++) {
+        for (let m = 0; m < N.length; m++, at++) {
+          if (where === "cell") {
+            const value = values[numbers[e]];
+            this.values[at] = Number.isNaN(value) ? 3e38 : value;
+            continue;
+          }
+          let sum = 0;
+          for (let n = 0; n < nodes; n++) sum += N[m][n] * values[elements[e * nodes + n]];
+          this.values[at] = Number.isNaN(sum) ? 3e38 : sum;
+        }
+      }
+    }
+  }
+
+  // Straight segments (start, end) along edges through nodes at these positions.
+  segments(nodal, triples) {
+    const pieces = this.along.length - 1;
+    const result = new Float32Array((triples.length / 3) * pieces * 6);
+    let at = 0;
+    for (let edge = 0; edge < triples.length; edge += 3) {
+      for (let piece = 0; piece < pieces; piece++) {
+        for (const f of [this.along[piece], this.along[piece + 1]]) {
+          for (let k = 0; k < 3; k++, at++) {
+            result[at] = f[0] * nodal[3 * triples[edge] + k] + f[1] * nodal[3 * triples[edge + 1] + k]
+              + f[2] * nodal[3 * triples[edge + 2] + k];
+          }
+        }
+      }
+    }
+    return result;
+  }
+
+  // Arrows (middle, vector) on up to `most` elements, spread evenly; `length` is that of the longest.
+  arrows(columns, most, length) {
+    const longest = Math.max(...columns[0].map((_, i) => Math.hypot(...columns.map((c) => c[i] || 0)))) || 1;
+    const count = this.kinds.reduce((sum, kind) => sum + kind.numbers.length, 0);
+    const every = Math.max(1, Math.ceil(count / most));
+    const result = [];
+    let at = 0, seen = 0;
+    for (const { numbers, N } of this.kinds) {
+      for (let e = 0; e < numbers.length; e++, seen++, at += 3 * N.length) {
+        if (seen % every) continue;
+        const vector = columns.map((column) => ((column[numbers[e]] || 0) * length) / longest);
+        if (Math.hypot(...vector) < 1e-6 * length) continue;
+        const middle = [0, 1, 2].map((k) => {
+          let sum = 0;
+          for (let m = 0; m < N.length; m++) sum += this.positions[at + 3 * m + k];
+          return sum / N.length;
+        });
+        result.push(...middle, ...vector);
+      }
+    }
+    return new Float32Array(result);
+  }
+}

@@ -1,0 +1,202 @@
+"""What a page holds of a path, in the types of JSON and as arrays in text."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from magshell.arrays import FloatArray
+from magshell.output.curve import LOAD_TEXT, abscissa, displacements, load_per_mT
+from magshell.output.labels import plain, shown_unit
+from magshell.output.page.arrays import quantised, span, text
+from magshell.output.page.stencils import stencils
+from magshell.output.registry import OUTPUTS, Output, find
+from magshell.output.scene import MOST_ELEMENTS_WITH_EDGES, best_axes
+from magshell.output.tessellation import element_edges
+
+if TYPE_CHECKING:
+    from magshell.mesh import Mesh
+    from magshell.solver.critical import CriticalPoint
+    from magshell.solver.path import Path, Step
+
+DIRECTIONS = 80
+MOST_ARROWS = 400
+
+
+class Data(NamedTuple):
+    """A header in the types of JSON, and arrays in base64 by name."""
+
+    header: dict[str, Any]
+    arrays: dict[str, str]
+
+
+def collect(path: Path, color: str, advance: Callable[[float], None]) -> Data:
+    """Everything a page shows of a path.
+
+    Parameters
+    ----------
+    path : Path
+        With at least one step.
+    color : str
+        Output that colours the shape when the page opens.
+    advance : callable
+        Told the share of the work that is done, after each output.
+
+    Raises
+    ------
+    InputError
+        No such output.
+    """
+    mesh = path.discretisation.mesh
+    first, component = find(color)
+    kinds, arrays = stencils(mesh)
+    arrays |= {
+        "points": text(mesh.points, "<f4"),
+        "edges": text(element_edges(mesh.elements), "<u4"),
+        "outline": text(mesh.boundary_edges, "<u4"),
+        "sequential": text(_colours("viridis"), "u1"),
+        "diverging": text(_colours("coolwarm"), "u1"),
+    }
+    outputs = []
+    for number, output in enumerate(OUTPUTS.values()):
+        about, arrays[output.name] = _output(path, output)
+        advance((number + 1) / len(OUTPUTS))
+        outputs.append(about)
+    magnitudes = [float(np.linalg.norm(step.flux_density)) for step in path.steps]
+    header = {
+        "outputs": outputs,
+        "colour": f"{first.name} {_column(first, component)}",
+        "mesh": kinds,
+        "edges": len(mesh.elements) <= MOST_ELEMENTS_WITH_EDGES,
+        "hull": _hull(path).tolist(),
+        "view": _view(path),
+        "arrows": {"output": "remanence", "most": MOST_ARROWS, "length": _arrow_length(mesh)},
+        "steps": [
+            {
+                "number": step.number,
+                "stage": step.stage + 1,
+                "load_factor": float(step.load_factor),
+                "field": step.flux_density.tolist(),
+                "magnitude": magnitude,
+                "unstable": bool(step.negative_pivots),
+            }
+            for step, magnitude in zip(path.steps, magnitudes, strict=True)
+        ],
+        "strongest": max(magnitudes),
+        "stages": path.steps[-1].stage + 1,
+        "curves": curves(path),
+    }
+    return Data(header, arrays)
+
+
+def _column(output: Output, component: int | None) -> int:
+    """Index of what colours the shape: a component from 0; after them the length of a vector."""
+    if component is not None:
+        return component - 1
+    return 0 if output.components == 1 else output.components
+
+
+def _output(path: Path, output: Output) -> tuple[dict[str, Any], str]:
+    """Description and codes of an output: step by step, component by component; once if it never changes."""
+    count = output.components
+    ranges: list[list[tuple[float, float]]] = [[] for _ in range(count + (count > 1))]
+    codes = []
+    for step in path.steps:
+        values = np.asarray(output.evaluate(path.discretisation, step.state), dtype=float)
+        columns = values.reshape(len(values), count).T
+        coded = [quantised(column) for column in columns]
+        for found, (_, ends) in zip(ranges, coded, strict=False):
+            found.append(ends)
+        if count > 1:
+            ranges[-1].append(span(np.linalg.norm(values, axis=1)))
+        codes.append(np.stack([code for code, _ in coded]))
+    constant = all(np.array_equal(code, codes[0]) for code in codes) and all(len(set(found)) == 1 for found in ranges)
+    if constant:
+        codes, ranges = codes[:1], [found[:1] for found in ranges]
+    unit, factor = shown_unit(output)
+    about = {
+        "name": output.name,
+        "symbol": plain(output),
+        "unit": unit,
+        "factor": factor,
+        "sentence": output.sentence,
+        "where": output.where,
+        "components": count,
+        "rows": codes[0].shape[1],
+        "steps": len(codes),
+        "ranges": ranges,
+    }
+    return about, text(np.stack(codes), "<u2")
+
+
+def curves(path: Path) -> dict[str, Any]:
+    """The curves of `magshell.output.curve`: mT or load parameter, mm."""
+    field, x = abscissa(path)
+    points: list[Step | CriticalPoint] = [*path.steps, *path.critical_points]
+    drawn = sorted(displacements(path, points), key=lambda curve: -curve.values[len(x) - 1])
+    scale = load_per_mT(path) if field else 0.0
+    _, critical = abscissa(path, path.critical_points)
+    return {
+        "x": x.tolist(),
+        "xlabel": "|B| (mT)" if field else "load factor",
+        "ylabel": "displacement (mm)",
+        "above": {"factor": scale, "label": LOAD_TEXT} if scale > 0 else None,
+        "lines": [
+            {
+                "label": curve.name,
+                "component": curve.letter,
+                "colour": curve.style["color"],
+                "dash": curve.style["linestyle"],
+                "marker": curve.style["marker"],
+                "y": (1e3 * curve.values[: len(x)]).tolist(),
+            }
+            for curve in drawn
+        ],
+        "critical": [
+            {
+                "x": float(place),
+                "y": [float(1e3 * curve.values[len(x) + number]) for curve in drawn],
+                "label": f"{point.kind}, load factor {point.load_factor:.4g} of stage {point.stage + 1}",
+            }
+            for number, (place, point) in enumerate(zip(critical, path.critical_points, strict=True))
+        ],
+    }
+
+
+def _positions(path: Path) -> Iterable[FloatArray]:
+    points = path.discretisation.mesh.points
+    return (points + step.state.u for step in path.steps)
+
+
+def _hull(path: Path) -> FloatArray:
+    """Points (n, 3) of the path that reach farthest in directions all around: what a picture of it must hold."""
+    number = np.arange(DIRECTIONS) + 0.5
+    height, turn = 1.0 - 2.0 * number / DIRECTIONS, np.pi * (1.0 + 5.0**0.5) * number
+    ring = np.sqrt(1.0 - height**2)
+    directions = np.stack([ring * np.cos(turn), ring * np.sin(turn), height])
+    extreme = np.concatenate([x[np.unique((x @ directions).argmax(axis=0))] for x in _positions(path)])
+    return np.asarray(extreme[np.unique((extreme @ directions).argmax(axis=0))])
+
+
+def _view(path: Path) -> tuple[float, float]:
+    """Azimuth and elevation of the eye that pictures have, degrees."""
+    mesh = path.discretisation.mesh
+    towards = best_axes(np.vstack([mesh.points, mesh.points + path.steps[-1].state.u]))[2]
+    return float(np.degrees(np.arctan2(towards[1], towards[0]))), float(np.degrees(np.arcsin(towards[2])))
+
+
+def _arrow_length(mesh: Mesh) -> float:
+    """Of the longest arrow, m: arrows on `MOST_ARROWS` elements, spread evenly, then do not cover each other."""
+    corners = mesh.points[mesh.elements[:, :4]]
+    diagonals = corners[:, 2:] - corners[:, :2]
+    area = 0.5 * np.linalg.norm(np.cross(diagonals[:, 0], diagonals[:, 1]), axis=1).sum()
+    return float(0.85 * np.sqrt(area / min(MOST_ARROWS, len(mesh.elements))))
+
+
+def _colours(name: str) -> Any:
+    """256 colours of a colour map, red, green, blue, 0 to 255."""
+    from matplotlib import colormaps
+
+    return colormaps[name](np.linspace(0.0, 1.0, 256), bytes=True)[:, :3]

@@ -1,0 +1,34 @@
+"""What a page says of the problem in a line: from the model and the path alone."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from importlib.metadata import version
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from magshell.units import FLUX_DENSITY, LENGTH, STRESS, show
+
+if TYPE_CHECKING:
+    from magshell.solver.path import Path
+
+Facts: TypeAlias = Sequence[tuple[str, str]]
+
+
+def facts(path: Path) -> Facts:
+    """Label and text of each: material, thickness, remanence, mesh, how the path ended, version."""
+    shell = path.model.shell
+    material = shell.material
+    words = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(material).__name__).lower().replace("hookean", "Hookean")
+    remanence = float(np.linalg.norm(path.discretisation.body.remanence, axis=-1).max())
+    lines = [
+        ("material", f"{words}, shear modulus {show(material.shear_modulus, STRESS)}"),
+        ("thickness", show(shell.thickness, LENGTH)),
+        ("remanence", f"up to {show(remanence, FLUX_DENSITY)}"),
+        ("mesh", f"{len(path.discretisation.mesh.elements)} elements, {path.discretisation.dofs} unknowns"),
+    ]
+    if not path.converged:
+        lines.append(("path", f"ends at step {path.steps[-1].number}: {path.reason}"))
+    return [*lines, ("magshell", version("magshell"))]

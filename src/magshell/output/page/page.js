@@ -1,0 +1,214 @@
+// The page: one state (step, colour, range, what is drawn), controls that change it, and everything that shows it.
+
+const at = (id) => document.getElementById(id);
+const ink = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const channels = (name, opacity) => {
+  const number = parseInt(ink(name).slice(1), 16);
+  return [(number >> 16) / 255, ((number >> 8) & 255) / 255, (number & 255) / 255, opacity];
+};
+
+const state = { step: header.steps.length - 1, quantity: null, component: 0 };
+let scene = null, body = null, camera = null, curves = null, playing = null, due = false;
+
+// ---- the shape
+
+function startShape() {
+  const canvas = at("canvas");
+  scene = new Scene(canvas);
+  body = new Body(header.mesh);
+  scene.setTriangles(body.triangles);
+  const edges = () => at("edges").checked;
+  const rest = () => at("undeformed").checked;
+  const behind = { nearer: 0, behind: true };
+  scene.faint = scene.addLines(() => ({ ...behind, width: 0.8, ink: channels("--pale", 0.4), shown: rest() && edges() }));
+  scene.rest = scene.addLines(() => ({ ...behind, width: 1.5, ink: channels("--pale", 1), shown: rest() }));
+  scene.grid = scene.addLines(() => ({ width: 0.8, ink: channels("--line", 0.3), nearer: 2e-3, shown: edges() }));
+  scene.rim = scene.addLines(() => ({ width: 1.5, ink: channels("--line", 1), nearer: 3e-3, shown: true }));
+  scene.setInstances(scene.faint, "start", body.segments(body.reference, body.edges));
+  scene.setInstances(scene.rest, "start", body.segments(body.reference, body.outline));
+  camera = new Camera(canvas, header.hull, header.view, redraw);
+  new ResizeObserver(() => {
+    canvas.width = Math.round(canvas.clientWidth * devicePixelRatio);
+    canvas.height = Math.round(canvas.clientHeight * devicePixelRatio);
+    camera.resized();
+  }).observe(canvas);
+}
+
+function showShape() {
+  if (!scene) return;
+  const nodal = body.moved(quantities.get("displacement").columns(state.step));
+  body.place(nodal);
+  scene.fill(scene.surface, "position", body.positions);
+  scene.fill(scene.surface, "normal", body.normals);
+  scene.setInstances(scene.rim, "start", body.segments(nodal, body.outline));
+  if (at("edges").checked) scene.setInstances(scene.grid, "start", body.segments(nodal, body.edges));
+  if (!at("arrows").checked) return;
+  const { arrows } = header;
+  const vectors = quantities.get(arrows.output).columns(state.step);
+  scene.setInstances(scene.arrow, "middle", body.arrows(vectors, arrows.most, arrows.length));
+}
+
+function showColours() {
+  const { quantity, component, step } = state;
+  const [low, high] = quantity.range(component, at("range").value === "step" ? step : null);
+  const largest = Math.max(Math.abs(low), Math.abs(high));
+  const flat = high - low <= 1e-9 * largest;
+  const both = !flat && Math.min(-low, high) > 0.1 * largest;
+  const half = 0.5 * (largest || 1);
+  state.range = flat ? [low - half, high + half] : both ? [-largest, largest] : [low, high];
+  const map = stored(both ? "diverging" : "sequential", Uint8Array);
+  if (scene) {
+    scene.setColours(map);
+    body.paint(quantity.shown(step, component), quantity.where);
+    scene.fill(scene.surface, "value", body.values);
+  }
+  showBar(map);
+}
+
+function showBar(map) {
+  const { quantity, component, range } = state;
+  const unit = quantity.unit ? ` (${quantity.unit})` : "";
+  at("quantity").textContent = quantity.letter(component) + unit;
+  at("meaning").textContent = quantity.sentence;
+  at("colour").title = quantity.sentence;
+  const stops = Array.from({ length: 17 }, (_, i) => {
+    const first = 3 * Math.round((i / 16) * (map.length / 3 - 1));
+    return `rgb(${map[first]} ${map[first + 1]} ${map[first + 2]})`;
+  });
+  at("scale").style.background = `linear-gradient(to top, ${stops})`;
+  const [low, high] = range.map((value) => value * quantity.factor);
+  at("ticks").replaceChildren(...ticks(low, high, 6).map(([value, text]) => {
+    const tick = document.createElement("li");
+    tick.style.bottom = `${(100 * (value - low)) / (high - low)}%`;
+    tick.textContent = text;
+    return tick;
+  }));
+}
+
+function redraw() {
+  if (due || !scene) return;
+  due = true;
+  requestAnimationFrame(() => {
+    due = false;
+    const { canvas } = scene.gl;
+    if (!state.range || !canvas.width || !canvas.height) return;
+    scene.draw(camera, state.range, at("arrows").checked && channels("--magnet", 1));
+    showCompass();
+    if (!performance.getEntriesByName("drawn").length) requestAnimationFrame(() => performance.mark("drawn"));
+  });
+}
+
+// The directions of space and of the field, turned with the shape; the field's arrow is as long as the field is strong.
+function showCompass() {
+  const compass = at("compass");
+  compass.replaceChildren();
+  const { axes } = camera;
+  const arrow = (vector, length, kind, text, from = 0) => {
+    const tip = [length * dot(axes[0], vector), -length * dot(axes[1], vector)];
+    const size = Math.hypot(...tip);
+    const group = svg(compass, "g", { class: kind, transform: `translate(${from} 0)` });
+    svg(group, "path", { d: `M0,0L${tip[0]},${tip[1]}` });
+    if (size > 4) {
+      const turn = (Math.atan2(tip[1], tip[0]) * 180) / Math.PI;
+      svg(group, "path", { d: "M1,0L-7,3.4V-3.4Z", transform: `translate(${tip}) rotate(${turn})`, class: "head" });
+    }
+    const beyond = size > 4 ? 1 + 11 / size : 1;
+    svg(group, "text", { x: tip[0] * beyond + (size > 4 ? 0 : 9), y: tip[1] * beyond + 4, "text-anchor": "middle" }, text);
+  };
+  const order = [0, 1, 2].sort((i, j) => axes[2][i] - axes[2][j]);
+  for (const i of order) arrow([0, 1, 2].map((k) => +(k === i)), 34, "direction", "X" + "₁₂₃"[i]);
+  const { field, magnitude } = header.steps[state.step];
+  if (magnitude > 0) arrow(field.map((b) => b / magnitude), 12 + (40 * magnitude) / header.strongest, "field", "B", 92);
+}
+
+// ---- step, and what is said of it
+
+function go(step) {
+  state.step = Math.max(0, Math.min(header.steps.length - 1, step));
+  const about = header.steps[state.step];
+  at("slider").value = state.step;
+  at("step").textContent = `step ${about.number} of ${header.steps.at(-1).number}`;
+  at("field").textContent = header.strongest > 0 ? `|B| = ${figures(about.magnitude * 1e3)} mT` : "no field";
+  at("load").textContent = (header.stages > 1 ? `stage ${about.stage}, ` : "") + `load factor ${figures(about.load_factor)}`;
+  at("unstable").hidden = !about.unstable;
+  curves?.mark(state.step);
+  showShape();
+  showColours();
+  redraw();
+}
+
+function play(on) {
+  clearInterval(playing);
+  playing = null;
+  at("play").textContent = on ? "❚❚" : "▶";
+  at("play").setAttribute("aria-label", on ? "pause" : "play");
+  if (!on) return;
+  if (state.step === header.steps.length - 1) go(0);
+  const pause = Math.max(60, Math.min(400, 4000 / header.steps.length));
+  playing = setInterval(() => {
+    go(state.step + 1);
+    if (state.step === header.steps.length - 1) play(false);
+  }, pause);
+}
+
+function fillMenu() {
+  const menu = at("colour");
+  for (const quantity of quantities.values()) {
+    const group = document.createElement("optgroup");
+    group.label = quantity.name.replaceAll("_", " ") + (quantity.unit ? ` (${quantity.unit})` : "");
+    const columns = quantity.components === 1 ? [0] : [0, 1, 2, 3];
+    for (const component of columns) {
+      const option = new Option(quantity.letter(component), `${quantity.name} ${component}`);
+      option.title = quantity.sentence;
+      group.append(option);
+    }
+    menu.append(group);
+  }
+  menu.value = header.colour;
+}
+
+function choose() {
+  const [name, component] = at("colour").value.split(" ");
+  state.quantity = quantities.get(name);
+  state.component = Number(component);
+}
+
+function listen() {
+  at("colour").addEventListener("change", () => { choose(); showColours(); redraw(); });
+  at("range").addEventListener("change", () => { showColours(); redraw(); });
+  for (const id of ["edges", "arrows", "undeformed"]) at(id).addEventListener("change", () => { showShape(); redraw(); });
+  at("slider").addEventListener("input", () => { play(false); go(Number(at("slider").value)); });
+  at("play").addEventListener("click", () => play(!playing));
+  for (const button of document.querySelectorAll("#views button")) {
+    const view = button.dataset.view ? button.dataset.view.split(" ").map(Number) : header.view;
+    button.addEventListener("click", () => camera?.look(...view));
+  }
+  const last = header.steps.length - 1;
+  const keys = {
+    ArrowRight: () => go(state.step + 1), ArrowLeft: () => go(state.step - 1), Home: () => go(0), End: () => go(last),
+    " ": () => play(!playing), r: () => camera?.look(...header.view),
+  };
+  document.addEventListener("keydown", (event) => {
+    if (!keys[event.key] || event.ctrlKey || event.altKey || event.metaKey) return;
+    if (event.target.closest("select") || (event.key === " " && event.target.closest("button, input"))) return;
+    event.preventDefault();
+    if (event.key !== " ") play(false);
+    keys[event.key]();
+  });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
+}
+
+at("slider").max = header.steps.length - 1;
+at("edges").checked = header.edges;
+fillMenu();
+choose();
+try {
+  startShape();
+} catch (error) {
+  scene = null;
+  at("message").textContent = `This browser cannot draw the shape: ${error.message}.`;
+}
+const unstable = header.steps.map((step) => step.unstable);
+curves = new Curves(at("plot"), at("legend"), header.curves, unstable, (step) => { play(false); go(step); });
+listen();
+go(state.step);

@@ -1,0 +1,104 @@
+"""The page: its parts put together, every text in it escaped."""
+
+from __future__ import annotations
+
+import html
+import json
+import os
+import pathlib
+import string
+from collections.abc import Callable, Sequence
+from importlib import resources
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+from magshell.errors import InputError
+from magshell.output.files import write_atomically
+from magshell.output.page.data import collect
+from magshell.output.page.facts import Facts, facts
+
+if TYPE_CHECKING:
+    from magshell.solver.path import Path
+
+SCRIPTS = ("data.js", "body.js", "camera.js", "scene.js", "curves.js", "page.js")
+TITLE = "Deformed shell"
+
+
+def write_page(
+    path: Path,
+    file: str | os.PathLike[str] = "view.html",
+    title: str = TITLE,
+    color: str = "u3",
+    about: Sequence[tuple[str, str]] = (),
+    advance: Callable[[float], None] = lambda share: None,
+) -> pathlib.Path:
+    """Write a path as one HTML file that shows itself in any browser, without a network.
+
+    Parameters
+    ----------
+    path : Path
+        Of one converged step or more.
+    file : path
+    title : str
+    color : str
+        Output that colours the shape when the page opens, as in `magshell.output.registry.find`.
+    about : sequence of (str, str)
+        Labels and texts said of the problem before what the model itself tells.
+    advance : callable
+        Told the share of the work that is done.
+
+    Returns
+    -------
+    pathlib.Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        A path without steps, or no such output.
+    OSError
+        The disk refuses; the message names the file.
+    """
+    target = pathlib.Path(file)
+    write_atomically(target, page(path, title, color, about, advance).encode())
+    return target
+
+
+def page(
+    path: Path,
+    title: str = TITLE,
+    color: str = "u3",
+    about: Sequence[tuple[str, str]] = (),
+    advance: Callable[[float], None] = lambda share: None,
+) -> str:
+    """The text of `write_page`'s file."""
+    if not path.steps:
+        raise InputError("the path has no converged step, so there is nothing to show")
+    data = collect(path, color, advance)
+    arrays = [
+        f'<script type="text/plain" id="array-{html.escape(name)}">{content}</script>'
+        for name, content in data.arrays.items()
+    ]
+    return string.Template(_part("page.html")).substitute(
+        title=html.escape(title),
+        version=html.escape(version("magshell")),
+        facts=_list([*about, *facts(path)]),
+        style=_part("page.css"),
+        header=_json(data.header),
+        arrays="\n".join(arrays),
+        script="\n".join(_part(name) for name in SCRIPTS),
+    )
+
+
+def _part(name: str) -> str:
+    return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")
+
+
+def _list(lines: Facts) -> str:
+    return "\n".join(f"<div><dt>{html.escape(label)}</dt><dd>{html.escape(text)}</dd></div>" for label, text in lines)
+
+
+def _json(value: Any) -> str:
+    """JSON that neither ends the element it stands in nor holds a number that is not finite."""
+    text = json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return text.translate({ord(sign): f"\\u{ord(sign):04x}" for sign in "<>&\u2028\u2029"})
