@@ -50,7 +50,7 @@ def test_a_strip_two_thousand_times_as_long_as_thick():
 
 
 def test_pure_bending_on_a_mesh_of_more_elements_than_needed():
-    """A strip rolled into a circle by a moment: the resultants of u vanish, and are no measure of their own residual."""
+    """A strip rolled into a circle by a moment: the forces of u vanish, and are no measure of their residual."""
     young, length, thickness = 1.2e6, 12.0, 0.1
     material = ms.MicropolarStVenantKirchhoff(young / 2, 0.0, 0.0, 0.0)
     shell = ms.Shell(ms.mesh.rectangle(length, 1.0, (48, 1)), thickness, material, micro_rotation=False)
