@@ -213,6 +213,19 @@ class Path:
 
         save_path(self, file)
 
+    def view(self, file: str | PathLike[str] = "view.html", color: str = "u3") -> None:
+        """Write one self-contained page for a browser: shape, steps, colours, curves.
+
+        Parameters
+        ----------
+        file : path
+        color : str
+            Output that colours the shape at first.
+        """
+        from magshell.output.page import write_page
+
+        write_page(self, file, color=color)
+
     def plot(self, color: str = "u3") -> Any:
         """Picture of the last deformed shape, coloured by a registered output."""
         from magshell.output.pictures import draw_shape
