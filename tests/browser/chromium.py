@@ -81,9 +81,8 @@ class Browser:
 
     def console(self) -> list[str]:
         """What the page complained of since the last call, without the remarks of the software graphics driver."""
-        return [
-            entry["message"] for entry in self.driver.get_log("browser") if "GL Driver Message" not in entry["message"]
-        ]
+        messages = [entry["message"] for entry in self.driver.get_log("browser")]
+        return [message for message in messages if "GL Driver Message" not in message]
 
     def requests(self) -> list[str]:
         """Addresses that were asked for since the last call."""
@@ -106,6 +105,7 @@ def browser(width: int = 1400, height: int = 900) -> Iterator[Browser]:
         try:
             window = Browser(driver)
             window.size(width, height)
+            window.requests()
             yield window
         finally:
             driver.quit()

@@ -23,7 +23,7 @@ class FakeDiscretisation:
     """The members that output reads, as formulas."""
 
     def __init__(self, model, mesh):
-        self.model, self.mesh = model, mesh
+        self.model, self.mesh, self.dofs = model, mesh, 7 * len(mesh.points)
         self.body = SimpleNamespace(remanence=np.tile([0.0, 0.0, 80e-3], (len(mesh.elements), 4, 1)))
         radial = mesh.points * [0, 1, 1]
         self.normals = radial / np.linalg.norm(radial, axis=1, keepdims=True)
@@ -58,10 +58,11 @@ class FakePath:
         self.model = SimpleNamespace(
             field=UniformField(field),
             coupling=MicropolarCouple(),
-            shell=SimpleNamespace(material=MicropolarNeoHookean(135e3, 3.25e6, 13.5e3, 9e-5)),
+            shell=SimpleNamespace(material=MicropolarNeoHookean(135e3, 3.25e6, 13.5e3, 9e-5), thickness=0.9e-3),
             probe_nodes={name: mesh.node_at(position) for name, position in probes.items()},
         )
         self.discretisation = FakeDiscretisation(self.model, mesh)
+        self.critical_points, self.converged, self.reason = [], True, "the end of the path is reached"
         self.steps = [self._step(number, load) for number, load in enumerate(loads)]
         self.summary = {"converged": True, "reason": "", "linear_solves": np.int64(21), "cpu_seconds": 0.125}
 
