@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
-from magshell.magnetics.remanence.template import placed
+from magshell.magnetics.remanence.template import carried, placed
 from magshell.magnetics.remanence.vectors import Remanence
 
 if TYPE_CHECKING:
@@ -24,6 +24,15 @@ class ByGroup:
 
     def __call__(self, mesh: Mesh, points: FloatArray) -> FloatArray:
         """The remanence at points (elements, points, 3); every part is asked at NaN outside its group."""
+        return self._gathered(mesh, points, lambda remanence, asked: remanence(mesh, asked))
+
+    def carried_at(self, mesh: Mesh, points: FloatArray) -> FloatArray:
+        """What the groups carry in their templates."""
+        return self._gathered(mesh, points, lambda remanence, asked: carried(remanence, mesh, asked))
+
+    def _gathered(
+        self, mesh: Mesh, points: FloatArray, of: Callable[[Remanence, FloatArray], FloatArray]
+    ) -> FloatArray:
         values = np.zeros(points.shape)
         owner = np.full(len(points), "", dtype=object)
         for group, remanence in self._remanences.items():
@@ -35,7 +44,7 @@ class ByGroup:
                     "one of them must give it up"
                 )
             owner[members] = group
-            values[members] = remanence(mesh, _only(members, points))[members]
+            values[members] = of(remanence, _only(members, points))[members]
         return values
 
     def placed(self, mesh: Mesh, points: FloatArray) -> FloatArray | None:

@@ -59,15 +59,19 @@ class Template:
 
     def __init__(self, shape: Shape, magnitude: float, direction: ArrayLike) -> None:
         self.shape = shape
-        self.carried = magnitude * unit("direction", direction)
+        self._carried = magnitude * unit("direction", direction)
 
     def __call__(self, mesh: Mesh, points: FloatArray) -> FloatArray:
         """M Rᵀ b at points (elements, points, 3)."""
-        return np.asarray(np.einsum("epij,i->epj", self.shape.place(mesh, points).rotations, self.carried))
+        return np.asarray(np.einsum("epij,i->epj", self.shape.place(mesh, points).rotations, self._carried))
 
     def placed(self, mesh: Mesh, points: FloatArray) -> FloatArray:
         """Where the template has the points."""
         return self.shape.place(mesh, points).positions
+
+    def carried_at(self, mesh: Mesh, points: FloatArray) -> FloatArray:
+        """M b at the points."""
+        return np.broadcast_to(self._carried, points.shape).copy()
 
 
 def template(shape: Shape, magnitude: float, direction: ArrayLike) -> Remanence:
@@ -89,3 +93,9 @@ def placed(remanence: Remanence, mesh: Mesh, points: FloatArray) -> FloatArray |
     """Where the template of a remanence has material points (elements, points, 3); None if it has no template."""
     there = getattr(remanence, "placed", None)
     return None if there is None else there(mesh, points)
+
+
+def carried(remanence: Remanence, mesh: Mesh, points: FloatArray) -> FloatArray:
+    """What the part carries in its template at points (elements, points, 3), T; the remanence itself without."""
+    there = getattr(remanence, "carried_at", None)
+    return remanence(mesh, points) if there is None else there(mesh, points)

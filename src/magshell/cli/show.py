@@ -1,0 +1,48 @@
+"""`magshell show`."""
+
+from __future__ import annotations
+
+import argparse
+import pathlib
+
+from magshell.cli.console import complain, console, say, say_doubts
+from magshell.cli.status import NOT_SOLVED, SOLVED
+
+ABOUT = "draw a problem before it is solved: mesh, remanence, field, supports, loads, probes"
+EXAMPLES = """
+examples:
+  magshell show gripper                             writes gripper-show.png
+  magshell show my-arm.toml --out pictures/arm.png
+  magshell show my-flower.toml --template           the shape in which it was magnetised"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What follows the command."""
+    parser.add_argument("problem", metavar="FILE|NAME", help="a problem file (.toml) or a built-in problem")
+    parser.add_argument("--out", metavar="PICTURE.png", help="the picture; without it NAME-show.png in this folder")
+    parser.add_argument(
+        "--template",
+        action="store_true",
+        help="the part in the shape in which it was magnetised, with what it carries there",
+    )
+
+
+def run(given: argparse.Namespace) -> int:
+    """Draw."""
+    from magshell.output.rendering import RenderingUnavailable
+    from magshell.output.setup import draw_setup
+    from magshell.problem import load
+    from magshell.problem.report import describe
+
+    problem = load(given.problem)
+    out = console()
+    say_doubts(out, describe(problem))
+    ending = "template" if given.template else "show"
+    file = pathlib.Path(given.out or f"{pathlib.Path(problem.source).stem}-{ending}.png")
+    try:
+        draw_setup(problem.model, file, problem.title, given.template)
+    except RenderingUnavailable as unavailable:
+        complain(str(unavailable))
+        return NOT_SOLVED
+    say(out, f"picture: {file}")
+    return SOLVED

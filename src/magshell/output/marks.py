@@ -1,0 +1,293 @@
+"""What is set on the part in a picture of the problem: arrows, posts, balls, each with its name for the legend."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from magshell.arrays import FloatArray, IntArray
+from magshell.loads import Force, Gravity, Moment, Pressure, Traction
+from magshell.mesh.geometry import unit
+from magshell.output.style import ACCENT, COLOURS, INK
+from magshell.supports import Clamp, Prescribe, SimpleSupport, Support, SymmetryPlane
+from magshell.units import ACCELERATION, FLUX_DENSITY, FORCE, MOMENT, STRESS, show
+
+if TYPE_CHECKING:
+    from magshell.loads import Load
+    from magshell.model import Model
+
+REMANENCE, LOAD, SUPPORTS = COLOURS[0], COLOURS[3], (COLOURS[2], COLOURS[4], COLOURS[6], COLOURS[5])
+MOST_ARROWS = 110
+MOST_POSTS = 60
+LONGEST, SHORTEST = 0.11, 0.03
+"""Length of an arrow over the size of the part."""
+SAME = 1e-9
+TIP = 0.11
+"""Radius of an arrow's head over its length."""
+
+
+class Solids(Enum):
+    """How a mark looks in space, and in the legend."""
+
+    ARROWS = ("$\\rightarrow$", 20.0)
+    CUBES = ("s", 8.0)
+    BALLS = ("o", 7.0)
+
+    @property
+    def marker(self) -> str:
+        """Of matplotlib."""
+        return str(self.value[0])
+
+    @property
+    def size(self) -> float:
+        """Points."""
+        return float(self.value[1])
+
+
+@dataclass(frozen=True, eq=False)
+class Mark:
+    """Equal things at places.
+
+    Attributes
+    ----------
+    name : str
+        In the legend; empty: not there.
+    colour : str
+    solids : Solids
+    places : FloatArray, shape (n, 3)
+        Middles of arrows, cubes and balls, m.
+    vectors : FloatArray, shape (n, 3)
+        Of arrows, as long as they are drawn, m.
+    width : float
+        Of cubes and balls, m.
+    letters : list of (str, FloatArray (3,), (float, float))
+        Text, its place and how far from it, in points.
+    """
+
+    name: str
+    colour: str
+    solids: Solids
+    places: FloatArray
+    vectors: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
+    width: float = 0.0
+    letters: Sequence[tuple[str, FloatArray, tuple[float, float]]] = ()
+
+    @property
+    def extent(self) -> FloatArray:
+        """Points (m, 3) that the picture must hold."""
+        if self.solids is not Solids.ARROWS:
+            return self.places
+        beyond = 0.7 if self.letters else 0.5
+        ends = np.concatenate([self.places - 0.5 * self.vectors, self.places + beyond * self.vectors])
+        aside = TIP * float(np.linalg.norm(self.vectors, axis=1).max(initial=0.0)) * np.eye(3)
+        return np.concatenate([ends + side for side in (*aside, *-aside)])
+
+    def place(self, plotter: Any) -> None:
+        """Add it to a plotter."""
+        import pyvista
+
+        if not len(self.places):
+            return
+        points = pyvista.PolyData(self.places)
+        if self.solids is Solids.ARROWS:
+            lengths = np.linalg.norm(self.vectors, axis=1)
+            points["length"], points["vector"] = lengths, unit(self.vectors)
+            slim = 0.75 if len(self.places) == 1 else 1.0
+            arrow = pyvista.Arrow(
+                start=(-0.5, 0, 0), tip_length=0.34 * slim, tip_radius=TIP * slim, shaft_radius=0.04 * slim,
+                tip_resolution=32, shaft_resolution=24,
+            )  # fmt: skip
+            body = points.glyph(orient="vector", scale="length", factor=1.0, geom=arrow)
+        else:
+            cube = self.solids is Solids.CUBES
+            geometry = pyvista.Cube() if cube else pyvista.Sphere(theta_resolution=24, phi_resolution=24)
+            body = points.glyph(orient=False, scale=False, factor=self.width, geom=geometry)
+        plotter.add_mesh(
+            body, color=self.colour, smooth_shading=self.solids is Solids.BALLS, ambient=0.62, specular=0.08
+        )
+
+
+def remanence_marks(model: Model, shown: FloatArray, axes: FloatArray, template: bool) -> list[Mark]:
+    """Arrows of the remanence at the middles of some elements, on the side of the surface that is seen.
+
+    Parameters
+    ----------
+    shown : FloatArray, shape (elements, 8, 3)
+        Where the nodes of the elements are drawn, m.
+    axes : FloatArray, shape (3, 3)
+        Of the view.
+    template : bool
+        The remanence carried by the template instead of that of the undeformed part.
+    """
+    from magshell.magnetics.remanence.template import carried
+
+    mesh = model.shell.mesh
+    centres = _middle(mesh.points[mesh.elements])[:, None]
+    vectors = (carried if template else _released)(model.shell.remanence, mesh, centres)[:, 0]
+    sizes = np.linalg.norm(vectors, axis=1)
+    if not sizes.any():
+        return []
+    middles = _middle(shown)
+    normals = np.cross(shown[:, 2] - shown[:, 0], shown[:, 3] - shown[:, 1])
+    area = 0.5 * np.linalg.norm(normals, axis=1)
+    normals = unit(normals) * np.where(normals @ axes[2] < 0.0, -1.0, 1.0)[:, None]
+    bearing = np.flatnonzero(sizes > SAME * sizes.max())
+    chosen = bearing[spread_out(middles[bearing], MOST_ARROWS)]
+    size = float(np.linalg.norm(np.ptp(shown.reshape(-1, 3), axis=0)))
+    length = np.clip(0.78 * np.sqrt(area[bearing].sum() / len(chosen)), SHORTEST * size, LONGEST * size)
+    drawn = length * vectors[chosen] / sizes.max()
+    out = np.abs((drawn * normals[chosen]).sum(axis=1))
+    lifted = 0.5 * out + 0.12 * length * (1.0 - out / length)
+    name = show(float(sizes.max()), FLUX_DENSITY)
+    if np.ptp(sizes[bearing]) > 1e-6 * sizes.max():
+        name = f"up to {name}"
+    return [
+        Mark(f"remanence, {name}", REMANENCE, Solids.ARROWS, middles[chosen] + lifted[:, None] * normals[chosen], drawn)
+    ]
+
+
+def _released(remanence: Any, mesh: Any, points: FloatArray) -> FloatArray:
+    return np.asarray(remanence(mesh, points))
+
+
+def _middle(x: FloatArray) -> FloatArray:
+    """Middles (elements, 3) of elements with nodes at (elements, 8, 3)."""
+    return np.asarray(0.5 * x[:, 4:].sum(axis=1) - 0.25 * x[:, :4].sum(axis=1))
+
+
+def spread_out(points: FloatArray, most: int) -> IntArray:
+    """Numbers of at most so many of the points (n, 3), as far from each other as one after the other can be."""
+    if len(points) <= most:
+        return np.arange(len(points))
+    chosen = [int(np.argmin(np.linalg.norm(points - points.mean(axis=0), axis=1)))]
+    distance = np.linalg.norm(points - points[chosen[0]], axis=1)
+    while len(chosen) < most:
+        chosen.append(int(np.argmax(distance)))
+        distance = np.minimum(distance, np.linalg.norm(points - points[chosen[-1]], axis=1))
+    return np.array(chosen)
+
+
+def field_marks(model: Model, extent: FloatArray, axes: FloatArray) -> list[Mark]:
+    """The field at the end of each stage, one arrow for each direction, to the left of everything."""
+    ends = [model.course(stage).at(1.0).flux_density for stage in range(len(model.stages))]
+    fields: list[tuple[int, FloatArray]] = []
+    for stage, flux in enumerate(ends):
+        new = all(np.abs(flux - other).max() > SAME * np.abs(other).max() for _, other in fields)
+        if np.any(flux) and new:
+            fields.append((stage, flux))
+    if not fields:
+        return []
+    seen = extent @ axes.T
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    size = float(np.linalg.norm(high - low))
+    strongest = max(float(np.linalg.norm(flux)) for _, flux in fields)
+    vectors = np.array([0.2 * size * flux / strongest for _, flux in fields])
+    across = float(np.max(vectors @ axes[0], initial=0.0))
+    tail = np.array([low[0] - 0.06 * size - across, (low[1] + high[1]) / 2, high[2]]) @ axes
+    tail = tail - 0.5 * vectors.mean(axis=0)
+    several = len(fields) > 1
+    marks = []
+    for (stage, flux), vector in zip(fields, vectors, strict=True):
+        letter = f"$B_{{{stage + 1}}}$" if several else "$B$"
+        name = f"field{f' {stage + 1}' if several else ''}, {show(float(np.linalg.norm(flux)), FLUX_DENSITY)}"
+        head = tail + 1.12 * vector
+        marks.append(
+            Mark(
+                name, ACCENT, Solids.ARROWS, (tail + 0.5 * vector)[None], vector[None], letters=[(letter, head, (0, 0))]
+            )
+        )
+    return marks
+
+
+def support_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:
+    """Cubes along clamped groups, balls along others."""
+    marks = []
+    mesh = model.shell.mesh
+    width = 0.016 * size
+    for number, support in enumerate(model.supports):
+        nodes = mesh.nodes_of(support.group)
+        nodes = nodes[spread_out(mesh.points[nodes], MOST_POSTS)]
+        solids = Solids.CUBES if isinstance(support, Clamp) else Solids.BALLS
+        wider = width if solids is Solids.CUBES else 0.85 * width
+        name = f"{support.group}: {_kind(support)}"
+        colour = SUPPORTS[number % len(SUPPORTS)]
+        marks.append(Mark(name, colour, solids, mesh.points[nodes] + 0.3 * width * axes[2], width=wider))
+    return marks
+
+
+def _kind(support: Support) -> str:
+    match support:
+        case Clamp():
+            return "clamp"
+        case SimpleSupport():
+            return "simple support"
+        case SymmetryPlane():
+            return "symmetry"
+        case Prescribe():
+            return f"{support.field}{support.component or ''} given"
+    return type(support).__name__
+
+
+def load_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:
+    """One arrow for forces, moments and weight, several for what is spread; away from the eye they end on the part."""
+    marks = []
+    for load in model.loads:
+        places, vector, name, letter = _load(model, load)
+        longest = float(np.linalg.norm(vector, axis=1).max())
+        if longest == 0.0:
+            continue
+        drawn = (0.14 if len(places) == 1 else 0.07) * size * vector / longest
+        away = drawn @ axes[2] < 0.0
+        tails = places - np.where(away[:, None], drawn, 0.0)
+        letter_at = tails[0] - 0.2 * drawn[0] if away[0] else tails[0] + 1.2 * drawn[0]
+        marks.append(Mark(name, LOAD, Solids.ARROWS, tails + 0.5 * drawn, drawn, letters=[(letter, letter_at, (0, 0))]))
+    return marks
+
+
+def _load(model: Model, load: Load) -> tuple[FloatArray, FloatArray, str, str]:
+    """Places (n, 3), vectors (n, 3) to scale, name and letter."""
+    mesh = model.shell.mesh
+    x = mesh.points[mesh.elements]
+    if isinstance(load, Force | Moment):
+        nodes = mesh.points[mesh.nodes_of(load.group)]
+        place = nodes[np.argmin(np.linalg.norm(nodes - nodes.mean(axis=0), axis=1))][None]
+        total = np.asarray(load.total, dtype=float)
+        dimension, letter = (FORCE, "$F$") if isinstance(load, Force) else (MOMENT, "$M$")
+        return place, total[None], f"{load.group}: {load.kind}, {show(float(np.linalg.norm(total)), dimension)}", letter
+    members = np.arange(len(x)) if load.group is None else mesh.elements_of(load.group)
+    middles = _middle(x[members])
+    if isinstance(load, Gravity):
+        g = np.asarray(load.acceleration, dtype=float)
+        place = middles[np.argmin(np.linalg.norm(middles - middles.mean(axis=0), axis=1))][None]
+        return place, g[None], f"gravity, {show(float(np.linalg.norm(g)), ACCELERATION)}", "$g$"
+    chosen = spread_out(middles, 12)
+    if isinstance(load, Traction):
+        vector = np.tile(np.asarray(load.traction, dtype=float), (len(chosen), 1))
+        size, letter = float(np.linalg.norm(vector[0])), "$t$"
+    else:
+        assert isinstance(load, Pressure)
+        own = x[members[chosen]]
+        vector = np.sign(load.pressure) * unit(np.cross(own[:, 2] - own[:, 0], own[:, 3] - own[:, 1]))
+        size, letter = abs(float(load.pressure)), "$p$"
+    return middles[chosen], vector, f"{load.group}: {load.kind}, {show(size, STRESS)}", letter
+
+
+def probe_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:
+    """A ball and a name at each probe."""
+    nodes = list(model.probe_nodes.values())
+    if not nodes:
+        return []
+    places = model.shell.mesh.points[nodes]
+    centre = model.shell.mesh.points.mean(axis=0)
+    letters = []
+    for name, place in zip(model.probe_nodes, places, strict=True):
+        away = (place - centre) @ axes[:2].T
+        length = float(np.linalg.norm(away))
+        direction = away / length if length > 1e-3 * size else np.array([0.0, 1.0])
+        text = name.replace("$", r"\$")
+        letters.append((text, place, (float(15 * direction[0]), float(15 * direction[1]))))
+    return [Mark("probes", INK, Solids.BALLS, places + 0.01 * size * axes[2], width=0.016 * size, letters=letters)]

@@ -1,0 +1,235 @@
+"""The picture before any solve: the undeformed part with its remanence, field, supports, loads and probes.
+
+What is drawn in space is made in `marks.py`; here it is rendered, lettered and explained beside.
+"""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from magshell.arrays import AnyArray, FloatArray
+from magshell.errors import InputError
+from magshell.magnetics.remanence import placed
+from magshell.output.marks import Mark, field_marks, load_marks, probe_marks, remanence_marks, support_marks
+from magshell.output.scene import (
+    MOST_ELEMENTS_WITH_EDGES,
+    OVERSAMPLING,
+    SURFACE,
+    Camera,
+    fit,
+    photograph,
+    polylines,
+    viewing_axes,
+)
+from magshell.output.shape import triad
+from magshell.output.style import DPI, GREY, INK, PALE, TEXT, deliver
+from magshell.output.tessellation import SIDES, Tessellation
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+    from magshell.mesh import Mesh
+    from magshell.model import Model
+
+INCHES = (10.0, 7.0)
+SCENE = (0.0, 0.015, 0.71, 0.875)
+"""Left, bottom, width and height of the scene as fractions of the picture."""
+PLAIN = "#dde3ea"
+TINTS = ("#cfdff3", "#f7dfc3", "#d3ecd0", "#e8daf2", "#f9d9dc", "#cdecec", "#f2ecc4", "#e0e0e0")
+ELEVATION = 36.0
+AZIMUTHS = (-60.0, -45.0, -75.0, -30.0, -120.0, -135.0)
+MOST_NAMES = 8
+
+
+def draw_setup(
+    model: Model, file: str | os.PathLike[str] | None = None, title: str = "", template: bool = False
+) -> Image | None:
+    """Draw what will be solved.
+
+    Parameters
+    ----------
+    model : Model
+    file : path, optional
+        PNG file to write; None to get the picture instead.
+    title : str
+        Above the picture.
+    template : bool
+        The part in the shape in which it was magnetised, with the remanence that it carries there, over the outline of
+        the undeformed part.
+
+    Returns
+    -------
+    PIL.Image.Image or None
+        The picture, if no file was named.
+
+    Raises
+    ------
+    InputError
+        A template where the remanence has none.
+    RenderingUnavailable
+        This machine cannot draw without a screen; the message says what to install.
+    OSError
+        The disk refuses; the message names the file.
+    """
+    from matplotlib.figure import Figure
+
+    mesh = model.shell.mesh
+    at_nodes = mesh.points[mesh.elements]
+    shown = _in_template(model, at_nodes) if template else at_nodes
+    extent = np.concatenate([shown.reshape(-1, 3), mesh.points])
+    axes3 = _view(extent)
+    size = float(np.linalg.norm(np.ptp(extent, axis=0)))
+    marks = remanence_marks(model, shown, axes3, template)
+    if not template:
+        marks += [*field_marks(model, extent, axes3), *load_marks(model, size, axes3)]
+        marks += [*support_marks(model, size, axes3), *probe_marks(model, size, axes3)]
+    pixels = (round(DPI * INCHES[0] * SCENE[2]), round(DPI * INCHES[1] * SCENE[3]))
+    kept = np.concatenate([extent, *(mark.extent for mark in marks)])
+    camera = fit(kept, axes3, pixels[0] / pixels[1])
+
+    def place(plotter: Any) -> None:
+        _place_body(plotter, mesh, shown, camera, size, template)
+        for mark in marks:
+            mark.place(plotter)
+
+    picture = photograph(place, camera, pixels)
+    figure = Figure(figsize=INCHES, dpi=DPI, facecolor="white")
+    axes = figure.add_axes(SCENE)
+    axes.set_axis_off()
+    axes.imshow(picture, aspect="auto", interpolation="none", extent=(0, 1, 0, 1))
+    for mark in marks:
+        _letter(axes, mark, camera)
+    corner = figure.add_axes((SCENE[2], 0.0, 1.0 - SCENE[2], 0.2))
+    corner.set_axis_off()
+    triad(corner, camera.axes)
+    _scale_bar(figure, camera)
+    figure.text(0.035, 0.94, title, va="center", **(TEXT | {"fontsize": 20}))
+    _legend(figure, mesh, marks, template)
+    return deliver(figure, file)
+
+
+def _in_template(model: Model, at_nodes: FloatArray) -> FloatArray:
+    there = placed(model.shell.remanence, model.shell.mesh, at_nodes)
+    if there is None:
+        raise InputError("remanence: no part of it has a template: nothing was magnetised in another shape")
+    return there
+
+
+def _view(points: FloatArray) -> FloatArray:
+    """From the front and above, turned so that the points spread over most of the picture."""
+
+    def spread(axes: FloatArray) -> float:
+        return float(np.linalg.det(np.cov((points @ axes[:2].T).T)))
+
+    views = [viewing_axes(azimuth, ELEVATION) for azimuth in AZIMUTHS]
+    largest = max(map(spread, views))
+    return next(axes for axes in views if spread(axes) >= 0.85 * largest)
+
+
+def tints(mesh: Mesh) -> AnyArray:
+    """Red, green, blue (elements, 3), 0 to 255: one tint for each element group, the plain one without groups."""
+    from matplotlib.colors import to_rgb
+
+    colours = np.tile(np.array(to_rgb(PLAIN)), (len(mesh.elements), 1))
+    if len(mesh.element_groups) > 1:
+        for number, members in enumerate(mesh.element_groups.values()):
+            colours[members] = to_rgb(TINTS[number % len(TINTS)])
+    return np.asarray((255 * colours).round().astype(np.uint8))
+
+
+def _place_body(plotter: Any, mesh: Mesh, shown: FloatArray, camera: Camera, size: float, template: bool) -> None:
+    """The surface and its element edges; every element has its own nodes, since a template may tear groups apart."""
+    import pyvista
+
+    own = np.arange(8 * len(shown)).reshape(-1, 8)
+    cells = Tessellation(own)
+    positions = shown.reshape(-1, 3)
+    surface = cells.surface(positions)
+    body = pyvista.PolyData.from_regular_faces(surface.points, surface.triangles)
+    body.point_data["colours"] = cells.on_elements(tints(mesh))
+    body.point_data.active_normals = surface.normals
+    plotter.add_mesh(body, scalars="colours", rgb=True, **SURFACE)
+    nearer = 1.5e-3 * size * camera.axes[2]
+    thin, thick = ({"lighting": False, "line_width": OVERSAMPLING * width} for width in (0.8, 1.8))
+    sides = own[:, SIDES[:, [0, 2, 1]]].reshape(-1, 3)
+    outer = np.isin(mesh.elements[:, 4:].ravel(), mesh.boundary_edges[:, 2])
+    if len(mesh.elements) <= MOST_ELEMENTS_WITH_EDGES:
+        plotter.add_mesh(polylines(cells.edges(positions + nearer, sides)), color=INK, opacity=0.22, **thin)
+    plotter.add_mesh(polylines(cells.edges(positions + nearer, sides[outer])), color=INK, **thick)
+    if template:
+        flat = Tessellation(mesh.elements).edges(mesh.points, mesh.boundary_edges)
+        plotter.add_mesh(polylines(flat), color=PALE, **thick)
+
+
+def _letter(axes: Any, mark: Mark, camera: Camera) -> None:
+    from matplotlib.patheffects import withStroke
+
+    for text, position, beyond in mark.letters:
+        place = camera.on_picture(position)
+        axes.annotate(
+            text,
+            place,
+            xytext=beyond,
+            xycoords="axes fraction",
+            textcoords="offset points",
+            ha="center",
+            va="center",
+            color=mark.colour,
+            fontsize=14,
+            annotation_clip=False,
+            path_effects=[withStroke(linewidth=3.0, foreground="white")],
+        )
+
+
+def _scale_bar(figure: Any, camera: Camera) -> None:
+    """A bar of a round length, with it."""
+    width = 2.0 * camera.half_width
+    longest = 0.13 * width / SCENE[2]
+    length = 10.0 ** np.floor(np.log10(longest))
+    length *= max(step for step in (1, 2, 5) if step * length <= longest)
+    share = SCENE[2] * length / width
+    axes = figure.add_axes((0.965 - share, 0.045, share, 0.012))
+    axes.set_axis_off()
+    axes.plot([0, 1], [0.5, 0.5], color=GREY, linewidth=2.2, solid_capstyle="butt", clip_on=False)
+    axes.text(0.5, 1.3, f"{1e3 * length:g} mm", ha="center", va="bottom", fontsize=12, color=GREY)
+    axes.set_xlim(0, 1)
+    axes.set_ylim(0, 1)
+
+
+def _legend(figure: Any, mesh: Mesh, marks: list[Mark], template: bool) -> None:
+    from matplotlib.lines import Line2D
+
+    handles, names = [], []
+    for mark in marks:
+        if mark.name:
+            handles.append(
+                Line2D(
+                    [], [], color=mark.colour, marker=mark.solids.marker, linestyle="none", markersize=mark.solids.size
+                )
+            )
+            names.append(mark.name)
+    groups = list(mesh.element_groups) if len(mesh.element_groups) > 1 else []
+    for number, group in enumerate(groups[:MOST_NAMES]):
+        colour = TINTS[number % len(TINTS)]
+        handles.append(Line2D([], [], color=colour, marker="s", linestyle="none", markersize=11, markeredgecolor=PALE))
+        names.append(group)
+    if len(groups) > MOST_NAMES:
+        handles.append(Line2D([], [], linestyle="none"))
+        names.append(f"and {len(groups) - MOST_NAMES} more groups")
+    if template:
+        handles.append(Line2D([], [], color=PALE, linewidth=1.8))
+        names.append("undeformed")
+    figure.legend(
+        handles,
+        names,
+        loc="center left",
+        bbox_to_anchor=(SCENE[2] + 0.005, 0.5),
+        frameon=False,
+        fontsize=12.5,
+        labelcolor=INK,
+        labelspacing=0.75,
+        handlelength=1.2,
+    )
