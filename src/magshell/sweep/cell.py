@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import pathlib
 
 from magshell.errors import InputError, SolveError
@@ -64,22 +63,31 @@ def solve_cell(name: str, text: str, folder: str, directory: str, stop: str) -> 
 
 
 def _solve(source: Source, directory: pathlib.Path, stop: Observer) -> None:
-    from magshell.output.critical import CriticalWriter
-    from magshell.output.files import write_atomically
-    from magshell.output.history import HistoryWriter
+    """From the last converged step in the folder, if there is one that can be read."""
+    from magshell import results
+    from magshell.output.files import remove_temporaries
+    from magshell.output.lock import alone
     from magshell.output.summary import write_summary
-    from magshell.output.vtu import VtuWriter
     from magshell.problem.building import build
     from magshell.problem.reading import check, parse
-    from magshell.solver import solve
+    from magshell.solver import resume, solve
 
     problem = build(check(parse(source.text, source.name), source.name), *source)
-    os.makedirs(directory, exist_ok=True)
-    write_atomically(directory / "problem.toml", source.text.encode())
-    observers = [HistoryWriter(directory), VtuWriter(directory), CriticalWriter(directory), stop]
-    try:
-        path = solve(problem.model, problem.settings, observers)
-    except SolveError as error:
-        write_summary(error.path, directory)
-        raise
-    write_summary(path, directory)
+    directory.mkdir(parents=True, exist_ok=True)
+    with alone(directory):
+        remove_temporaries(directory)
+        try:
+            earlier = results.read(directory).path if results.begun(directory) else None
+        except InputError:
+            earlier = None
+        observers = [*results.writers(problem, directory), stop]
+        try:
+            if earlier is None:
+                results.make(problem, directory)
+                path = solve(problem.model, problem.settings, observers)
+            else:
+                path = resume(earlier, observers)
+        except SolveError as error:
+            write_summary(error.path, directory)
+            raise
+        write_summary(path, directory)

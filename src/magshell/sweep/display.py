@@ -98,6 +98,7 @@ class Display:
             completed=self._before + ended,
             description=f"{self._counts()}, {self._running} running",
             left=estimate,
+            refresh=True,
         )
 
     def _line(self, text: str, style: str | None = None) -> None:

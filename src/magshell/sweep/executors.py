@@ -16,6 +16,9 @@ from typing import Any, Protocol
 from magshell.errors import InputError
 from magshell.processes import interrupts_wait, single_threaded, work_for_the_parent
 
+PATIENCE = "10s"
+"""For the scheduler of a cluster to answer."""
+
 Function = Callable[..., Any]
 
 
@@ -97,7 +100,7 @@ class DaskWorkers:
             raise InputError("--dask: needs the package distributed: pip install 'magshell[dask]'") from None
         client: Any = distributed.Client
         try:
-            self._client: Any = client(address, timeout="10s", set_as_default=False)
+            self._client: Any = client(address, timeout=PATIENCE, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:
             raise InputError(f"--dask {address}: no scheduler answers: {error}") from None
         try:

@@ -27,7 +27,7 @@ class Cell:
     values : tuple of Value
         One for each setting.
     label : str
-        The same in words.
+        Those that vary, in words.
     source : Source
         The problem file with these values.
     probes : tuple of str
@@ -76,23 +76,25 @@ def grid(
         raise InputError(f"--set: asks for {count} cells; a sweep has at most {MOST_CELLS}")
     cells: list[Cell] = []
     faults: dict[str, list[str]] = {}
+    varied = [setting.key for setting in settings if count == 1 or len(setting.values) > 1]
     for number, values in enumerate(itertools.product(*(setting.values for setting in settings)), start=1):
         changes = {setting.key: value for setting, value in zip(settings, values, strict=True)}
+        words = label({key: changes[key] for key in varied})
         try:
-            cells.append(_cell(number, changes, source))
+            cells.append(_cell(number, words, changes, source))
         except InputError as error:
             for line in str(error).splitlines():
-                faults.setdefault(line, []).append(f"cell {number}: {label(changes)}")
+                faults.setdefault(line, []).append(f"cell {number}: {words}")
         checked(number)
     if faults:
         raise InputError("\n".join(_lines(faults, count, source.name)))
     return cells
 
 
-def _cell(number: int, changes: dict[str, Value], source: Source) -> Cell:
+def _cell(number: int, words: str, changes: dict[str, Value], source: Source) -> Cell:
     found = changed(source, changes)
     file = check(parse(found.text, found.name), found.name)
-    cell = Cell(number, tuple(changes.values()), label(changes), found, tuple(file.probes))
+    cell = Cell(number, tuple(changes.values()), words, found, tuple(file.probes))
     try:
         model = build(file, *found).model
     except NothingLoads:
@@ -104,7 +106,7 @@ def _lines(faults: dict[str, list[str]], count: int, name: str) -> list[str]:
     """What is wrong, and in which cells."""
     lines = []
     for fault, where in faults.items():
-        others = f" and {len(where) - 1} more" if len(where) > 1 else ""
+        others = f"; and {len(where) - 1} more" if len(where) > 1 else ""
         lines.append(f"{fault} (every cell)" if len(where) == count else f"{fault} ({where[0]}{others})")
     if len(lines) > MOST_ERRORS:
         lines[MOST_ERRORS:] = [f"{name}: and {len(lines) - MOST_ERRORS} more errors"]

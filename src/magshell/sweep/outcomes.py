@@ -113,7 +113,9 @@ def displacement(outcome: Outcome, probe: str) -> tuple[float | None, float | No
 
 
 def _value(value: Value) -> str:
-    return value.text if value.number is None else repr(value.number)
+    if value.number is None or isinstance(value.data, int):
+        return value.text
+    return repr(value.number)
 
 
 def _number(value: Any) -> str:
