@@ -1,9 +1,10 @@
-"""Meshes of 8-node quadrilaterals with named groups: made by a generator, or from arrays."""
+"""Meshes of 8-node quadrilaterals and 6-node triangles with named groups: by a generator, from a file or arrays."""
 
 from __future__ import annotations
 
+from magshell.mesh.files import from_cad, read, write
 from magshell.mesh.generators import annulus, cylinder, rectangle, sphere_patch
 from magshell.mesh.mesh import Mesh
 from magshell.mesh.multiblock import blocks
 
-__all__ = ["Mesh", "annulus", "blocks", "cylinder", "rectangle", "sphere_patch"]
+__all__ = ["Mesh", "annulus", "blocks", "cylinder", "from_cad", "read", "rectangle", "sphere_patch", "write"]

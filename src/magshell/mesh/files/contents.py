@@ -43,6 +43,8 @@ class Contents:
     """Unit of length, where the file says it."""
     notes: tuple[str, ...] = ()
     """What the reader left out."""
+    order: tuple[str, ...] = ()
+    """Names of groups in the order in which they are to stand; others come behind."""
 
 
 def in_order(numbers: IntArray, points: FloatArray, twice: Callable[[int], NoReturn]) -> tuple[IntArray, FloatArray]:

@@ -66,7 +66,8 @@ def read_msh(content: bytes, name: str) -> Contents:
     numbers, points, blocks, solids = read(lines, sections, names)
     if not len(numbers):
         raise InputError(f"{name}: the section $Nodes is empty")
-    return Contents(points, blocks, solids=solids, unit=_unit(lines, sections.get("Comments")))
+    unit = _unit(lines, sections.get("Comments"))
+    return Contents(points, blocks, solids=solids, unit=unit, order=tuple(names.values()))
 
 
 def _version(content: bytes, name: str) -> str:

@@ -1,0 +1,199 @@
+"""Geometry meshed by gmsh: second-order quadrilaterals where it can, triangles where it cannot."""
+
+from __future__ import annotations
+
+import math
+import os
+import pathlib
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from magshell.errors import InputError
+from magshell.mesh.files.assembling import FileMesh, assemble
+from magshell.mesh.files.contents import GROUPED
+from magshell.mesh.files.from_gmsh import contents_of
+from magshell.mesh.files.paths import GEOMETRY, readable
+from magshell.mesh.files.session import quiet, session
+from magshell.mesh.files.units import agreed, length_unit
+from magshell.mesh.geometry import diagonal_normals
+from magshell.mesh.quality import worst
+
+KNOWS_ITS_UNIT = (".step", ".stp", ".iges", ".igs")
+"""Formats that say the unit of their lengths: gmsh turns them into millimetres."""
+CONVERTED = "mm"
+DEFAULT_ELEMENTS = 800
+"""About as many elements does a mesh have whose size nobody said."""
+GOOD = 0.3
+"""Worst scaled Jacobian with which the first mesh is taken."""
+USABLE = 0.05
+"""Below this a mesh of quadrilaterals is worse than one of triangles."""
+
+
+class Attempt(NamedTuple):
+    """A way to mesh, by gmsh's numbers: Mesh.Algorithm, Mesh.RecombinationAlgorithm, whether to recombine at all."""
+
+    algorithm: int
+    recombination: int
+    recombine: bool = True
+
+
+ATTEMPTS = (
+    Attempt(11, 0),  # quasi-structured quadrilaterals: the best corners by far, but it fails on some surfaces
+    Attempt(6, 3),  # frontal Delaunay, recombined (blossom) to quadrilaterals only: not for periodic surfaces
+    Attempt(6, 1),  # frontal Delaunay, recombined (blossom): keeps a transfinite surface as it is; triangles may remain
+    Attempt(5, 1),  # Delaunay, recombined (blossom)
+    Attempt(6, 0, recombine=False),  # triangles: always possible
+)
+STRUCTURED = 2
+"""The attempt that begins where the file says itself how its surfaces are to be divided."""
+
+
+class _Candidate(NamedTuple):
+    mesh: FileMesh
+    triangles: int
+    worst: float
+    """Least scaled Jacobian."""
+
+    @property
+    def rank(self) -> tuple[bool, bool, float]:
+        return self.worst >= USABLE, self.triangles in (0, len(self.mesh.elements)), self.worst
+
+    @property
+    def good(self) -> bool:
+        return not self.triangles and self.worst >= GOOD
+
+
+def from_cad(file: str | os.PathLike[str], size: float | None = None, unit: str | None = None) -> FileMesh:
+    """Mesh a geometry with gmsh (the extra `magshell[gmsh]`).
+
+    Several of gmsh's algorithms are tried until one gives quadrilaterals only, without a bad corner; else the best is
+    taken, which may have triangles. The nodes, mid-sides too, lie on the surfaces and curves of the geometry.
+
+    Parameters
+    ----------
+    file : path
+        `.geo`, `.step`, `.stp`, `.iges`, `.igs` or `.brep`. Its physical groups become groups; if it has none, every
+        surface and curve becomes one, by its own name or as surface-1, curve-1 and so on.
+    size : float, optional
+        Length of an element's side, m; without it that of the `.geo` file, or such that there are about 800 elements.
+    unit : str, optional
+        Of the lengths in a `.geo` or `.brep` file; STEP and IGES files say it themselves.
+
+    Returns
+    -------
+    FileMesh
+
+    Raises
+    ------
+    InputError
+        gmsh is not there; no such file; a unit that is missing or superfluous; a geometry with a volume or without a
+        surface; gmsh's own errors.
+    """
+    path, name = pathlib.Path(file), pathlib.Path(file).name
+    suffix = path.suffix.lower()
+    if suffix not in GEOMETRY:
+        raise InputError(f"{name}: is not a geometry that gmsh meshes; there is: {', '.join(GEOMETRY)}")
+    readable(path)
+    if size is not None and not (math.isfinite(size) and size > 0.0):
+        raise InputError(f"size = {size!r} is not allowed; it must be a positive length, in m")
+    own = agreed(unit, CONVERTED if suffix in KNOWS_ITS_UNIT else None, name)
+    with session(name) as gmsh:
+        _open(gmsh, path, name)
+        scale = length_unit(own)
+        _set_size(gmsh, None if size is None else size / scale, suffix)
+        first = STRUCTURED if suffix == ".geo" and "Transfinite" in path.read_text("utf-8", "replace") else 0
+        return _best(gmsh, name, own, ATTEMPTS[first:])
+
+
+def _open(gmsh: Any, path: pathlib.Path, name: str) -> None:
+    """Load the geometry; refuse volumes; name surfaces and curves if nothing has a name."""
+    with quiet():
+        gmsh.open(str(path))
+        gmsh.model.occ.synchronize()
+    if gmsh.model.getEntities(3):
+        raise InputError(
+            f"{name}: holds {len(gmsh.model.getEntities(3))} solid(s). A shell is the mesh of a mid-surface, and its "
+            "thickness is a number in the problem file: export the mid-surface (a sheet or surface body)"
+        )
+    if not gmsh.model.getEntities(2):
+        raise InputError(f"{name}: has no surface that could be meshed")
+    if path.suffix.lower() not in (".geo", ".geo_unrolled"):
+        # Sheets that touch get common curves; of a .geo file this is its own affair (Coherence).
+        gmsh.model.occ.removeAllDuplicates()
+        gmsh.model.occ.synchronize()
+    if not gmsh.model.getPhysicalGroups(2) and not gmsh.model.getPhysicalGroups(1):
+        for dimension in (2, 1):
+            for _, entity in gmsh.model.getEntities(dimension):
+                _name_entity(gmsh, dimension, entity)
+
+
+def _name_entity(gmsh: Any, dimension: int, entity: int) -> None:
+    """A group by the entity's number, and one by the name that the CAD program gave it."""
+    label = gmsh.model.getEntityName(dimension, entity).rpartition("/")[2]
+    own = [] if not label or label.startswith("Open CASCADE") else [label]
+    for name in (f"{GROUPED[dimension]}-{entity}", *own):
+        tag = gmsh.model.addPhysicalGroup(dimension, [entity])
+        gmsh.model.setPhysicalName(dimension, tag, name)
+
+
+def _set_size(gmsh: Any, size: float | None, suffix: str) -> None:
+    """The size of elements in the file's unit: as asked, else as the file says, else from the area."""
+    option = gmsh.option.setNumber
+    if size is None and suffix in (".geo", ".geo_unrolled"):
+        points = gmsh.model.getEntities(0)
+        if len(gmsh.model.mesh.field.list()) or (points and np.any(gmsh.model.mesh.getSizes(points))):
+            return
+    if size is None:
+        size = _size_from_area(gmsh)
+    for fixed in ("MeshSizeFromPoints", "MeshSizeFromCurvature", "MeshSizeExtendFromBoundary"):
+        option(f"Mesh.{fixed}", 0)
+    option("Mesh.MeshSizeMin", size)
+    option("Mesh.MeshSizeMax", size)
+
+
+def _size_from_area(gmsh: Any) -> float:
+    """Side of a square of which so many make up the surface, measured on a coarse mesh of triangles."""
+    gmsh.option.setNumber("Mesh.RecombineAll", 0)
+    gmsh.model.mesh.generate(2)
+    contents = contents_of(gmsh, "")
+    corners = np.concatenate([block.kind.rows(block.nodes) for block in contents.blocks if block.kind.dimension == 2])
+    area = np.linalg.norm(diagonal_normals(contents.points[corners[:, :4]]), axis=1).sum()
+    gmsh.model.mesh.clear()
+    return float(f"{math.sqrt(area / DEFAULT_ELEMENTS):.2g}")
+
+
+def _best(gmsh: Any, name: str, unit: str, attempts: tuple[Attempt, ...]) -> FileMesh:
+    """The first good mesh, else the best one; of triangles only if there is no other."""
+    best: _Candidate | None = None
+    reason = f"{name}: gmsh makes no elements of it"
+    for attempt in attempts:
+        if best is not None and (best.good or (best.worst >= USABLE and not attempt.recombine)):
+            break
+        try:
+            candidate = _meshed(gmsh, name, unit, attempt)
+        except InputError as error:
+            reason = str(error)
+        except Exception as error:  # gmsh raises Exception itself
+            reason = f"{name}: gmsh cannot mesh it: {' '.join(str(error).split())}"
+        else:
+            best = candidate if best is None or candidate.rank > best.rank else best
+    if best is None:
+        raise InputError(reason)
+    return best.mesh
+
+
+def _meshed(gmsh: Any, name: str, unit: str, attempt: Attempt) -> _Candidate:
+    """A mesh of second order made in one way."""
+    option = gmsh.option.setNumber
+    gmsh.model.mesh.clear()
+    option("Mesh.Algorithm", attempt.algorithm)
+    option("Mesh.RecombinationAlgorithm", attempt.recombination)
+    option("Mesh.RecombineAll", 1 if attempt.recombine else 0)
+    option("Mesh.ElementOrder", 1)
+    option("Mesh.SecondOrderIncomplete", 1)
+    gmsh.model.mesh.generate(2)
+    gmsh.model.mesh.setOrder(2)
+    mesh = assemble(contents_of(gmsh, name), name, unit, second_order=False)
+    triangles = int((mesh.elements[:, 2] == mesh.elements[:, 3]).sum())
+    return _Candidate(mesh, triangles, worst(mesh)["scaled_jacobian"].value)

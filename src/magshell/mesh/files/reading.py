@@ -1,0 +1,86 @@
+"""A mesh from a file, whatever its format."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+
+from magshell.errors import InputError
+from magshell.mesh.files.assembling import FileMesh, assemble
+from magshell.mesh.files.contents import Contents
+from magshell.mesh.files.paths import GEOMETRY, readable
+from magshell.mesh.files.units import agreed
+
+
+def read(file: str | os.PathLike[str], unit: str | None = None, second_order: bool = False) -> FileMesh:
+    """Read a mesh with its groups.
+
+    Parameters
+    ----------
+    file : path
+        gmsh's `.msh` (formats 4.1 and 2.2 in text; all others if the extra `magshell[gmsh]` is installed), Abaqus'
+        `.inp`, VTK's `.vtu` and `.vtk`, and what meshio reads if the extra `magshell[meshio]` is installed.
+    unit : str, optional
+        Of the lengths in the file: m, cm, mm or um. Required, unless the file says it: those of `write` and of
+        `magshell mesh` do, and the program's own `.vtu` files.
+    second_order : bool
+        Whether elements of first order are raised to second, with middles on the curved surface that they stand for;
+        refused otherwise.
+
+    Returns
+    -------
+    FileMesh
+        In m; `origin` says what was changed. Nodes and elements are numbered in the order of the file's numbers.
+        Named surfaces, curves and points (or sets of elements, lines and nodes) are its groups; one without a name is
+        called surface-3, curve-3 or point-3.
+
+    Raises
+    ------
+    InputError
+        No such file, an unknown format, a file that is not what it should be (with the line), no unit, elements that
+        make no shell.
+    MeshError
+        What `Mesh` refuses.
+    """
+    path, name = pathlib.Path(file), pathlib.Path(file).name
+    if path.suffix.lower() in GEOMETRY:
+        raise InputError(
+            f"{name}: is a geometry, not a mesh. Mesh it first: magshell mesh {name} --size LENGTH --out "
+            f"{path.with_suffix('.msh').name}, and name that file"
+        )
+    readable(path)
+    contents = _contents(path, name)
+    return assemble(contents, name, agreed(unit, contents.unit, name), second_order)
+
+
+def _contents(path: pathlib.Path, name: str) -> Contents:
+    match path.suffix.lower():
+        case ".msh":
+            return _msh(path, name)
+        case ".inp":
+            from magshell.mesh.files.inp import read_inp
+
+            return read_inp(path.read_bytes(), name)
+        case ".vtu" | ".vtk":
+            from magshell.mesh.files.vtk import read_vtk
+
+            return read_vtk(path, name)
+        case _:
+            from magshell.mesh.files.other import read_other
+
+            return read_other(path, name)
+
+
+def _msh(path: pathlib.Path, name: str) -> Contents:
+    """By the plain reader, or by gmsh if that does not read the format."""
+    from magshell.mesh.files.msh import PlainReaderError, read_msh
+    from magshell.mesh.files.session import INSTALL, installed
+
+    try:
+        return read_msh(path.read_bytes(), name)
+    except PlainReaderError as error:
+        if not installed():
+            raise InputError(f"{error}; or let gmsh read it: {INSTALL}") from None
+    from magshell.mesh.files.from_gmsh import read_with_gmsh
+
+    return read_with_gmsh(path, name)
