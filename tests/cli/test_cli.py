@@ -28,7 +28,7 @@ def test_version_and_help_in_a_process() -> None:
     assert "Traceback" not in without.stderr
 
 
-@pytest.mark.parametrize("command", [[], ["run"], ["check"], ["examples"]])
+@pytest.mark.parametrize("command", [[], *([name] for name in cli.COMMANDS)])
 def test_every_command_has_help_with_examples(command: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         cli.main([*command, "--help"])

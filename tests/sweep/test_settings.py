@@ -11,8 +11,8 @@ import pytest
 from problem_files import LOADED, STRIP, changed
 
 from magshell.errors import InputError
-from magshell.problem import examples, schema
-from magshell.problem.alternatives import MOST_VALUES, read_setting, read_settings, value_of
+from magshell.problem import examples, load, schema
+from magshell.problem.alternatives import MOST_VALUES, read_changes, read_setting, read_settings, value_of
 from magshell.problem.changes import VECTORS, put
 from magshell.problem.changes import changed as with_values
 from magshell.problem.fields import (
@@ -209,3 +209,14 @@ def test_a_name_with_dots() -> None:
     source = SOURCE._replace(text=changed(STRIP, ("far = {", '"far.away" = {')))
     found = tomllib.loads(with_values(source, {"mesh.edge_groups.far.away.x1": value_of("1 mm")}).text)
     assert found["mesh"]["edge_groups"] == {"far.away": {"x1": "1 mm"}}
+
+
+def test_a_problem_is_loaded_with_changes() -> None:
+    changes = read_changes(["shell.thickness=0.5 mm", "field.flux_density=-5 mT", "mesh.elements=[4, 1]"])
+    problem = load("strip-10", changes)
+    assert problem.model.shell.thickness == 0.5e-3
+    assert problem.model.field.vector.tolist() == [0.0, 0.0, -5e-3]
+    assert len(problem.model.shell.mesh.elements) == 4
+    assert "-5 mT" in problem.text
+    with pytest.raises(InputError, match=r"--set shell.thickness: has 2 values \(1 mm, 2 mm, …\); a run takes one"):
+        read_changes(["shell.thickness=1,2 mm"])

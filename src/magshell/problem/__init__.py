@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 from magshell.problem.examples import names
 from magshell.problem.reading import check, find, parse, read
@@ -14,13 +15,16 @@ if TYPE_CHECKING:
 __all__ = ["load", "names", "read"]
 
 
-def load(source: str | os.PathLike[str]) -> Problem:
+def load(source: str | os.PathLike[str], changes: Mapping[str, Any] | None = None) -> Problem:
     """Read a problem file, or a built-in problem by name, and build its model.
 
     Parameters
     ----------
     source : path or str
         A TOML file, or one of `names()`.
+    changes : mapping of str to object, optional
+        Other values for some keys, written as in the file: {"shell.thickness": "0.8 mm"}. A single quantity for the
+        vector of a field, remanence or load is its magnitude (`magshell.problem.changes`).
 
     Returns
     -------
@@ -33,6 +37,11 @@ def load(source: str | os.PathLike[str]) -> Problem:
         One line per error, each with file and key.
     """
     found = find(source)
+    if changes:
+        from magshell.problem.alternatives import value_of
+        from magshell.problem.changes import changed
+
+        found = changed(found, {key: value_of(data) for key, data in changes.items()})
     file = check(parse(found.text, found.name), found.name)
     from magshell.problem.building import build
 

@@ -93,18 +93,21 @@ def read_setting(text: str) -> Setting:
         raise InputError(f"--set {shortened(key)}: {error}") from None
 
 
-def one_value(setting: Setting) -> Value:
-    """The value of a setting that has only one.
+def read_changes(texts: Sequence[str]) -> dict[str, Any]:
+    """Key and value, as TOML gives it, of settings that have one value each.
 
     Raises
     ------
     InputError
-        It has several.
+        What cannot be read, or has several values.
     """
-    if len(setting.values) > 1:
-        listed = ", ".join(value.text for value in setting.values[:3])
-        raise InputError(f"--set {setting.key}: has {len(setting.values)} values ({listed}, …); a run takes one")
-    return setting.values[0]
+    changes = {}
+    for setting in read_settings(texts):
+        if len(setting.values) > 1:
+            listed = ", ".join(value.text for value in setting.values[:3])
+            raise InputError(f"--set {setting.key}: has {len(setting.values)} values ({listed}, …); a run takes one")
+        changes[setting.key] = setting.values[0].data
+    return changes
 
 
 def value_of(data: Any) -> Value:
