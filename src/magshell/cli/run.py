@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from magshell.cli.console import complain, console, say, say_doubts
 from magshell.cli.folders import made
+from magshell.cli.mesh import say_origin
 from magshell.cli.status import INTERRUPTED, NOT_SOLVED, SOLVED
 from magshell.errors import InputError, SolveError
 from magshell.units import LENGTH, show
@@ -80,6 +81,7 @@ def _new(problem: Problem, directory: pathlib.Path) -> int:
 
     out = console()
     say(out, problem.title)
+    say_origin(out, problem.model.shell.mesh)
     say_doubts(out, describe(problem))
     _forget_earlier_run(out, directory)
     results.make(problem, directory)

@@ -148,6 +148,9 @@ def _located(details: Mapping[str, Any]) -> tuple[str, str]:
     where = [part for part in details["loc"] if part != "[key]"]
     context = details.get("ctx", {})
     choice, depth = ProblemFile.chosen_by.get(str(where[0]) if where else "", ("", 0))
+    if where[:1] == ["mesh"]:
+        choice = "" if where[1:2] == ["file"] else choice
+        del where[1:2]  # file or generator
     if choice and len(where) > depth:
         del where[depth]
     match details["type"]:
@@ -194,7 +197,8 @@ def _kinds(table: str) -> list[str]:
         "loads": schema.Load,
     }
     choice, _ = schema.ProblemFile.chosen_by[table]
-    return [get_args(kind.model_fields[choice].annotation)[0] for kind in get_args(kinds[table])]
+    fields = [kind.model_fields.get(choice) for kind in get_args(kinds[table])]
+    return [get_args(field.annotation)[0] for field in fields if field is not None]
 
 
 def _written(where: Sequence[str | int]) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.mesh import Mesh
+from magshell.mesh.files import FileMesh
 from magshell.mesh.quality import worst
 from magshell.nodal import width
 from magshell.problem import load_report, schema
@@ -138,7 +139,11 @@ def _mesh(problem: Problem, extent: float) -> Iterator[tuple[str, str]]:
     unknowns = sum(width(field) * int(nodes.sum()) for field, nodes in carriers.items())
     least, greatest = mesh.points.min(axis=0), mesh.points.max(axis=0)
     quality = worst(mesh)
-    yield "generator", problem.file.mesh.generator
+    if isinstance(mesh, FileMesh):
+        yield "file", f"{mesh.origin.file}, lengths in {mesh.origin.unit}"
+        yield from (("changed", change) for change in mesh.origin.changes)
+    elif not isinstance(problem.file.mesh, schema.MeshFile):
+        yield "generator", problem.file.mesh.generator
     yield "elements, nodes", f"{len(mesh.elements)}, {len(mesh.points)}"
     yield (
         "unknowns",

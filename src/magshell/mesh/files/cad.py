@@ -22,6 +22,8 @@ from magshell.mesh.quality import worst
 KNOWS_ITS_UNIT = (".step", ".stp", ".iges", ".igs")
 """Formats that say the unit of their lengths: gmsh turns them into millimetres."""
 CONVERTED = "mm"
+IGES = (".iges", ".igs")
+"""Formats in which a closed surface, as a tube, has its seam twice: the nodes there are joined."""
 DEFAULT_ELEMENTS = 800
 """About as many elements does a mesh have whose size nobody said."""
 GOOD = 0.3
@@ -194,6 +196,8 @@ def _meshed(gmsh: Any, name: str, unit: str, attempt: Attempt) -> _Candidate:
     option("Mesh.SecondOrderIncomplete", 1)
     gmsh.model.mesh.generate(2)
     gmsh.model.mesh.setOrder(2)
+    if name.lower().endswith(IGES):
+        gmsh.model.mesh.removeDuplicateNodes()
     mesh = assemble(contents_of(gmsh, name), name, unit, second_order=False)
     triangles = int((mesh.elements[:, 2] == mesh.elements[:, 3]).sum())
     return _Candidate(mesh, triangles, worst(mesh)["scaled_jacobian"].value)

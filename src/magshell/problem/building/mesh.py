@@ -7,17 +7,21 @@ import pathlib
 import numpy as np
 
 from magshell.errors import InputError
-from magshell.mesh import Mesh, annulus, blocks, cylinder, rectangle, sphere_patch
+from magshell.mesh import Mesh, annulus, blocks, cylinder, read, rectangle, sphere_patch
 from magshell.problem import schema
 from magshell.problem.building.located import at
+from magshell.problem.schema.mesh import Generated
 
 MOST_ELEMENTS = 1_000_000
 
 
 def build_mesh(table: schema.Mesh, folder: pathlib.Path) -> Mesh:
     """The mesh that a table describes, with its selections as groups."""
-    with at("mesh"):
-        mesh = _generated(table)
+    if isinstance(table, schema.MeshFile):
+        mesh = _read(table, folder)
+    else:
+        with at("mesh"):
+            mesh = _generated(table)
     for name, selection in table.edge_groups.items():
         with at(f"mesh.edge_groups.{name}"):
             mesh = mesh.select_edges(name, selection.x1, selection.x2, selection.x3)
@@ -27,7 +31,18 @@ def build_mesh(table: schema.Mesh, folder: pathlib.Path) -> Mesh:
     return mesh
 
 
-def _generated(table: schema.Mesh) -> Mesh:
+def _read(table: schema.MeshFile, folder: pathlib.Path) -> Mesh:
+    try:
+        mesh = read(folder / table.file, table.unit, table.second_order)
+    except InputError as error:
+        of_unit = str(error).startswith("unit: ")
+        raise InputError(f"mesh.{error}" if of_unit else f"mesh.file: {error}") from None
+    if len(mesh.elements) > MOST_ELEMENTS:
+        raise InputError(f"mesh.file: {table.file} has {len(mesh.elements)} elements; at most {MOST_ELEMENTS}")
+    return mesh
+
+
+def _generated(table: Generated) -> Mesh:
     match table:
         case schema.Rectangle():
             _bounded(table.elements)

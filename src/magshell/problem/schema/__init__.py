@@ -6,7 +6,8 @@ know, such as whether a group exists, is checked in `magshell.problem.building`.
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar
+from collections.abc import Iterator
+from typing import Annotated, ClassVar, get_args
 
 from pydantic import BeforeValidator, Field
 
@@ -26,7 +27,18 @@ from magshell.problem.schema.loading import (
     TractionTable,
 )
 from magshell.problem.schema.material import Material, MooneyRivlin, NeoHookean, ShellTable, StVenantKirchhoff
-from magshell.problem.schema.mesh import Annulus, Block, Blocks, Cylinder, Mesh, Rectangle, Selection, SpherePatch
+from magshell.problem.schema.mesh import (
+    Annulus,
+    Block,
+    Blocks,
+    Cylinder,
+    Mesh,
+    MeshFile,
+    Rectangle,
+    Selection,
+    SpherePatch,
+    TheMesh,
+)
 from magshell.problem.schema.remanence import (
     CircumferentialRemanence,
     ConstantRemanence,
@@ -65,6 +77,7 @@ __all__ = [
     "Material",
     "MeridionalRemanence",
     "Mesh",
+    "MeshFile",
     "MomentTable",
     "MooneyRivlin",
     "NeoHookean",
@@ -105,7 +118,7 @@ class ProblemFile(Table):
 
     title: str = ""
     description: str = ""
-    mesh: Annotated[Mesh, Field(discriminator="generator")]
+    mesh: TheMesh
     shell: ShellTable
     material: Annotated[Material, Field(discriminator="law")]
     remanence: tuple[Annotated[Remanence, Field(discriminator="kind")], ...] = ()
@@ -115,3 +128,20 @@ class ProblemFile(Table):
     stages: tuple[StageTable, ...] = ()
     probes: dict[f.ProbeName, f.Position] = {}
     solver: SolverTable = SolverTable()
+
+    def files(self) -> list[tuple[str, str]]:
+        """Key, as in `remanence[1].file`, and name of every file that the problem names, in the order of the keys."""
+        return list(_files(self, ""))
+
+
+def _files(value: object, where: str) -> Iterator[tuple[str, str]]:
+    if isinstance(value, tuple):
+        for number, entry in enumerate(value):
+            yield from _files(entry, f"{where}[{number}]")
+    if not isinstance(value, Table):
+        return
+    for key, field in type(value).model_fields.items():
+        inside, path = getattr(value, key), f"{where}.{key}".lstrip(".")
+        if isinstance(inside, str) and get_args(f.FileName)[1] in field.metadata:
+            yield path, inside
+        yield from _files(inside, path)

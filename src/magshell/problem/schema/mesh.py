@@ -1,12 +1,12 @@
-"""The table `mesh`: a generator and its numbers, and named selections."""
+"""The table `mesh`: a generator and its numbers, or a file; and named selections."""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Any, Literal, TypeAlias, get_args
 
-from pydantic import BeforeValidator, StrictBool, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag, model_validator
 
-from magshell.errors import InputError
+from magshell.errors import InputError, suggest
 from magshell.problem import fields as f
 from magshell.problem.schema.table import Table, key_error
 
@@ -100,4 +100,37 @@ class SpherePatch(_Groups):
     elements: f.Divisions
 
 
-Mesh: TypeAlias = Rectangle | Annulus | Blocks | Cylinder | SpherePatch
+class MeshFile(_Groups):
+    """A mesh from a file, with the groups that the file names."""
+
+    file: f.FileName
+    unit: f.LengthUnit | None = None
+    second_order: StrictBool = False
+
+
+Generated: TypeAlias = Rectangle | Annulus | Blocks | Cylinder | SpherePatch
+Mesh: TypeAlias = Generated | MeshFile
+
+
+def generator_or_file(data: Any) -> Any:
+    """Refuse a table that has both, or neither."""
+    if isinstance(data, dict):
+        if "file" in data and "generator" in data:
+            raise key_error("file", "is given beside generator; give one or the other")
+        if "file" not in data and "generator" not in data:
+            generators = [get_args(kind.model_fields["generator"].annotation)[0] for kind in get_args(Generated)]
+            raise key_error("generator", f"is missing, and mesh.file as well. {suggest('', generators)}")
+    return data
+
+
+def one_of_both(data: Any) -> str:
+    """Which part of the union a table belongs to."""
+    return "file" if isinstance(data, MeshFile) or (isinstance(data, dict) and "file" in data) else "generator"
+
+
+TheMesh = Annotated[
+    Annotated[Annotated[Generated, Field(discriminator="generator")], Tag("generator")]
+    | Annotated[MeshFile, Tag("file")],
+    Discriminator(one_of_both),
+    BeforeValidator(generator_or_file),
+]
