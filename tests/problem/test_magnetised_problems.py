@@ -15,7 +15,6 @@ from magshell.errors import InputError
 from magshell.problem.building import Problem, build
 from magshell.problem.reading import check, parse
 from magshell.problem.report import describe
-from magshell.problem.schema.remanence import files_of
 from problem.magnetised import FIELDS, REMANENCE, SURFACES, TEMPLATES
 
 
@@ -94,9 +93,13 @@ def test_files_start_where_the_problem_file_is(tmp_path) -> None:
 
 
 def test_names_of_files() -> None:
-    for text, names in ((FILE, ("b.csv",)), (SHAPE, ("u.csv",)), (REMANENCE, ())):
+    for text, names in (
+        (FILE, [("remanence[0].file", "b.csv")]),
+        (SHAPE, [("remanence[0].displacements", "u.csv")]),
+        (REMANENCE, []),
+    ):
         file = check(parse(changed(BLOCKS, (REMANENCE, text)), "test.toml"), "test.toml")
-        assert files_of(file.remanence[0]) == names
+        assert file.files() == names
 
 
 class Broken(NamedTuple):

@@ -6,7 +6,9 @@ import argparse
 import pathlib
 
 from magshell.cli.console import complain, console, say, say_doubts
+from magshell.cli.folders import made
 from magshell.cli.status import NOT_SOLVED, SOLVED
+from magshell.errors import InputError
 
 ABOUT = "draw a problem before it is solved: mesh, remanence, field, supports, loads, probes"
 EXAMPLES = """
@@ -38,7 +40,7 @@ def run(given: argparse.Namespace) -> int:
     out = console()
     say_doubts(out, describe(problem))
     ending = "template" if given.template else "show"
-    file = pathlib.Path(given.out or f"{pathlib.Path(problem.source).stem}-{ending}.png")
+    file = _picture(given.out or f"{pathlib.Path(problem.source).stem}-{ending}.png")
     try:
         draw_setup(problem.model, file, problem.title, given.template)
     except RenderingUnavailable as unavailable:
@@ -46,3 +48,12 @@ def run(given: argparse.Namespace) -> int:
         return NOT_SOLVED
     say(out, f"picture: {file}")
     return SOLVED
+
+
+def _picture(name: str) -> pathlib.Path:
+    """Where the picture goes, its folder made."""
+    file = pathlib.Path(name)
+    if file.suffix.lower() != ".png" or file.is_dir():
+        raise InputError(f"--out {name}: name a picture that ends in .png")
+    made(file.parent)
+    return file

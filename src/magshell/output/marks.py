@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
 REMANENCE, LOAD, SUPPORTS = COLOURS[0], COLOURS[3], (COLOURS[2], COLOURS[4], COLOURS[6], COLOURS[5])
 MOST_ARROWS = 110
-MOST_POSTS = 60
+MOST_POSTS = 40
+EVENING = 8
 LONGEST, SHORTEST = 0.11, 0.03
 """Length of an arrow over the size of the part."""
 SAME = 1e-9
@@ -96,7 +97,7 @@ class Mark:
         if self.solids is Solids.ARROWS:
             lengths = np.linalg.norm(self.vectors, axis=1)
             points["length"], points["vector"] = lengths, unit(self.vectors)
-            slim = 0.75 if len(self.places) == 1 else 1.0
+            slim = 0.8 if len(self.places) == 1 else 1.0
             arrow = pyvista.Arrow(
                 start=(-0.5, 0, 0), tip_length=0.34 * slim, tip_radius=TIP * slim, shaft_radius=0.04 * slim,
                 tip_resolution=32, shaft_resolution=24,
@@ -160,7 +161,12 @@ def _middle(x: FloatArray) -> FloatArray:
 
 
 def spread_out(points: FloatArray, most: int) -> IntArray:
-    """Numbers of at most so many of the points (n, 3), as far from each other as one after the other can be."""
+    """Numbers of at most so many of the points (n, 3), evenly over all of them.
+
+    One after the other as far from the rest as can be; then each moves into the middle of those nearest to it.
+    """
+    from scipy.spatial import cKDTree
+
     if len(points) <= most:
         return np.arange(len(points))
     chosen = [int(np.argmin(np.linalg.norm(points - points.mean(axis=0), axis=1)))]
@@ -168,7 +174,14 @@ def spread_out(points: FloatArray, most: int) -> IntArray:
     while len(chosen) < most:
         chosen.append(int(np.argmax(distance)))
         distance = np.minimum(distance, np.linalg.norm(points - points[chosen[-1]], axis=1))
-    return np.array(chosen)
+    seeds = points[chosen]
+    tree = cKDTree(points)
+    for _ in range(EVENING):
+        owner = np.asarray(cKDTree(seeds).query(points)[1])
+        count = np.bincount(owner, minlength=len(seeds))[:, None]
+        total = np.stack([np.bincount(owner, points[:, axis], len(seeds)) for axis in range(3)], axis=1)
+        seeds = np.where(count > 0, total / np.maximum(count, 1), seeds)
+    return np.unique(np.asarray(tree.query(seeds)[1]))
 
 
 def field_marks(model: Model, extent: FloatArray, axes: FloatArray) -> list[Mark]:

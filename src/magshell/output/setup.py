@@ -39,6 +39,7 @@ SCENE = (0.0, 0.015, 0.71, 0.875)
 """Left, bottom, width and height of the scene as fractions of the picture."""
 PLAIN = "#dde3ea"
 TINTS = ("#cfdff3", "#f7dfc3", "#d3ecd0", "#e8daf2", "#f9d9dc", "#cdecec", "#f2ecc4", "#e0e0e0")
+AMBIENT = 0.55
 ELEVATION = 36.0
 AZIMUTHS = (-60.0, -45.0, -75.0, -30.0, -120.0, -135.0)
 MOST_NAMES = 8
@@ -151,7 +152,7 @@ def _place_body(plotter: Any, mesh: Mesh, shown: FloatArray, camera: Camera, siz
     body = pyvista.PolyData.from_regular_faces(surface.points, surface.triangles)
     body.point_data["colours"] = cells.on_elements(tints(mesh))
     body.point_data.active_normals = surface.normals
-    plotter.add_mesh(body, scalars="colours", rgb=True, **SURFACE)
+    plotter.add_mesh(body, scalars="colours", rgb=True, **(SURFACE | {"ambient": AMBIENT}))
     nearer = 1.5e-3 * size * camera.axes[2]
     thin, thick = ({"lighting": False, "line_width": OVERSAMPLING * width} for width in (0.8, 1.8))
     sides = own[:, SIDES[:, [0, 2, 1]]].reshape(-1, 3)

@@ -155,13 +155,3 @@ Remanence: TypeAlias = (
     | FileRemanence
     | Template
 )
-
-
-def files_of(entry: Remanence) -> tuple[str, ...]:
-    """Names of the files that an entry reads."""
-    match entry:
-        case FileRemanence():
-            return (entry.file,)
-        case DeformedRemanence():
-            return (entry.displacements,)
-    return ()

@@ -1,0 +1,171 @@
+"""The picture before any solve: what is marked, where, and what it looks like."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import magshell as ms
+from magshell.errors import InputError
+from magshell.output.marks import (
+    MOST_ARROWS,
+    Solids,
+    field_marks,
+    load_marks,
+    probe_marks,
+    remanence_marks,
+    spread_out,
+    support_marks,
+)
+from magshell.output.scene import viewing_axes
+from magshell.output.setup import draw_setup, tints
+
+LENGTH, WIDTH = 20e-3, 6e-3
+RUBBER = ms.MicropolarNeoHookean(303e3, 7300e3, 30.3e3, 1e-4)
+AXES = viewing_axes(-60.0, 36.0)
+X3 = np.array([0.0, 0.0, 1.0])
+
+
+def strip(remanence=None, elements=(20, 6), **options):
+    mesh = ms.mesh.rectangle(LENGTH, WIDTH, elements)
+    groups = {"near": np.flatnonzero(mesh.points[mesh.elements[:, 0], 0] < 0.4 * LENGTH)}
+    groups["far"] = np.setdiff1d(np.arange(len(mesh.elements)), groups["near"])
+    mesh = ms.mesh.Mesh(mesh.points, mesh.elements, groups, mesh.edge_groups)
+    shell = ms.Shell(mesh, 1e-3, RUBBER, remanence or ms.remanence.constant((0.1, 0, 0)), density=1200.0)
+    options = {"field": ms.UniformField((0, 0, 5e-3)), "probes": {"tip": (LENGTH, 0, 0)}} | options
+    return ms.Model(shell, [ms.Clamp("left")], **options)
+
+
+def shown(model):
+    mesh = model.shell.mesh
+    return mesh.points[mesh.elements]
+
+
+def test_arrows_are_as_the_remanence_at_their_places():
+    """Direction and length; in the plane just above it, out of it beginning at it, into it ending at it."""
+    turning = ms.remanence.profile((0.0, 0.1), (0, LENGTH), (1, 0, 0), (1, 0, 0), (0, 6 * np.pi), X3)
+    model = strip(turning)
+    (mark,) = remanence_marks(model, shown(model), AXES, template=False)
+    assert mark.solids is Solids.ARROWS
+    assert mark.name == "remanence, up to 97.5 mT"
+    assert 0.7 * MOST_ARROWS < len(mark.places) <= MOST_ARROWS, len(mark.places)
+    at = mark.places[:, 0]
+    length = np.linalg.norm(mark.vectors, axis=1)
+    θ = 6 * np.pi * at / LENGTH
+    step = length.max() / 0.975
+    expected = step * (at / LENGTH)[:, None] * np.stack([np.cos(θ), 0 * θ, np.sin(θ)], axis=1)
+    assert np.abs(mark.vectors - expected).max() < 1e-12 * LENGTH
+    lowest = np.minimum(mark.places[:, 2] - 0.5 * mark.vectors[:, 2], mark.places[:, 2] + 0.5 * mark.vectors[:, 2])
+    assert lowest.min() > -1e-12 * LENGTH
+    assert lowest.max() < 0.13 * step
+
+
+def test_elements_without_remanence_have_no_arrows():
+    model = strip(ms.remanence.by_group({"far": ms.remanence.constant((0.1, 0, 0))}))
+    (mark,) = remanence_marks(model, shown(model), AXES, template=False)
+    assert mark.places[:, 0].min() > 0.4 * LENGTH
+    bare = strip(ms.remanence.constant((0, 0, 0)), loads=[ms.Gravity(-9.81 * X3)])
+    assert remanence_marks(bare, shown(bare), AXES, template=False) == []
+
+
+def test_chosen_points_are_spread_out():
+    points = np.random.default_rng(8).uniform(0, 1, (2000, 3)) * [4, 1, 0]
+    chosen = spread_out(points, 100)
+    assert 90 <= len(chosen) <= 100
+    apart = np.linalg.norm(points[chosen][:, None] - points[chosen], axis=2) + 9 * np.eye(len(chosen))
+    even = np.sqrt(4 / len(chosen))
+    assert apart.min() > 0.4 * even, apart.min() / even
+    farthest = np.linalg.norm(points[:, None] - points[chosen], axis=2).min(axis=1).max()
+    assert farthest < 1.3 * even, farthest / even
+    assert np.array_equal(spread_out(points[:5], 9), np.arange(5))
+
+
+def test_the_template_carries_a_uniform_remanence():
+    fold = ms.remanence.Fold((0.4 * LENGTH, 0, 0), (1, 0, 0), X3, np.pi / 2)
+    model = strip(ms.remanence.by_group({"far": ms.remanence.template(ms.remanence.folded(fold), 0.1, X3)}))
+    (mark,) = remanence_marks(model, shown(model), AXES, template=True)
+    length = np.linalg.norm(mark.vectors, axis=1)
+    assert np.abs(mark.vectors - length[:, None] * X3).max() < 1e-12 * LENGTH
+    with pytest.raises(InputError, match="no part of it has a template"):
+        draw_setup(strip(), template=True)
+
+
+def test_field_arrows_one_for_each_direction():
+    extent = shown(strip()).reshape(-1, 3)
+    (mark,) = field_marks(strip(), extent, AXES)
+    assert mark.name == "field, 5 mT"
+    assert np.abs(mark.vectors[0] / np.linalg.norm(mark.vectors[0]) - X3).max() < 1e-15
+    assert ((mark.extent @ AXES[0]) < (extent @ AXES[0]).min()).all(), "left of the part"
+    turning = ms.UniformField((0, 0, 5e-3), rotation_axis=(0, 1, 0), rotation=(0, np.pi / 2, np.pi / 2))
+    marks = field_marks(strip(field=turning), extent, AXES)
+    assert [mark.name for mark in marks] == ["field 1, 5 mT", "field 2, 5 mT"]
+    assert [mark.letters[0][0] for mark in marks] == ["$B_{1}$", "$B_{2}$"]
+    assert abs(marks[0].vectors[0] @ marks[1].vectors[0]) < 1e-12
+    assert field_marks(strip(field=ms.UniformField((0, 0, 0)), loads=[ms.Gravity(-X3)]), extent, AXES) == []
+
+
+def test_supports_and_probes_are_where_they_are():
+    model = strip()
+    (clamp,) = support_marks(model, LENGTH, AXES)
+    assert (clamp.name, clamp.solids) == ("left: clamp", Solids.CUBES)
+    assert np.abs(clamp.places[:, :1]).max() < 0.02 * LENGTH
+    (probes,) = probe_marks(model, LENGTH, AXES)
+    ((text, place, _),) = probes.letters
+    assert text == "tip"
+    assert np.array_equal(place, [LENGTH, 0, 0])
+    others = [ms.SimpleSupport("left"), ms.SymmetryPlane("right", (1, 0, 0)), ms.Prescribe("right", "u", 3, 1e-3)]
+    model = ms.Model(model.shell, [*others, ms.Prescribe("left", "omega")], model.field)
+    names = [mark.name for mark in support_marks(model, LENGTH, AXES)]
+    assert names == ["left: simple support", "right: symmetry", "right: u3 given", "left: omega given"]
+    assert probe_marks(model, LENGTH, AXES) == []
+
+
+def test_loads_begin_on_the_part_or_end_there():
+    loads = [
+        ms.Force("right", (0, 0, 2e-3)),
+        ms.Moment("right", (0, 1e-5, 0)),
+        ms.Traction("far", (0, 0, -5.0)),
+        ms.Pressure("near", 8.0),
+        ms.Gravity((0, 0, -9.81)),
+    ]
+    marks = load_marks(strip(loads=loads), LENGTH, AXES)
+    assert [mark.name for mark in marks] == [
+        "right: force, 2 mN",
+        "right: moment, 0.01 N mm",
+        "far: traction, 5 Pa",
+        "near: pressure, 8 Pa",
+        "gravity, 9.81 m/s^2",
+    ]
+    for mark, sign in zip(marks, (1, 0, -1, 1, -1), strict=True):
+        assert (np.sign(mark.vectors[:, 2]) == sign).all()
+        near = mark.places - 0.5 * np.sign(sign) * mark.vectors
+        if sign:
+            assert np.abs(near[:, 2]).max() < 1e-12 * LENGTH, mark.name
+
+
+def test_groups_have_tints_and_a_part_of_one_piece_is_plain():
+    model = strip()
+    colours = tints(model.shell.mesh)
+    near, far = (model.shell.mesh.elements_of(name) for name in ("near", "far"))
+    assert len(np.unique(colours[near], axis=0)) == len(np.unique(colours[far], axis=0)) == 1
+    assert (colours[near[0]] != colours[far[0]]).any()
+    assert len(np.unique(tints(ms.mesh.rectangle(1, 1, (2, 2))), axis=0)) == 1
+
+
+def test_picture(tmp_path, can_draw):
+    """The remanence is blue, the field orange, the clamp green, all on white; the legend is not cut off."""
+    file = tmp_path / "strip.png"
+    model = strip(elements=(10, 3))
+    assert draw_setup(model, file, "A strip") is None
+    picture = np.asarray(Image.open(file)).astype(int)
+    assert picture.shape == (1120, 1600, 3)
+    red, green, blue = np.moveaxis(picture, 2, 0)
+    counts = {
+        "remanence": ((blue > 150) & (red < 80) & (green < 110)).sum(),
+        "field": ((red > 150) & (green < 100) & (blue < 60)).sum(),
+        "clamp": ((green > 90) & (red < 60) & (blue < 90)).sum(),
+    }
+    assert min(counts.values()) > 800, counts
+    border = np.concatenate([picture[0], picture[-1], picture[:, 0], picture[:, -1]])
+    assert (border == 255).all()
