@@ -1,10 +1,11 @@
 # make demo: a virtual environment, the gripper solved, its picture.   make test: lint, types, tests.
+# make docs: the documentation site, in docs/_build/html; any warning is an error (make test builds it too).
 # make verify: the studies behind the pages of docs; an hour or so, may be interrupted.
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test lint figures verify clean
+.PHONY: demo test lint docs figures verify clean
 
 demo: $(VENV)/installed
 	$(BIN)/magshell run gripper --out results/gripper
@@ -17,6 +18,10 @@ lint: $(VENV)/installed-dev
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/python docs/make_reference.py --check
+
+docs: $(VENV)/installed-dev
+	rm -rf docs/_build docs/worked-examples docs/api/generated
+	$(BIN)/sphinx-build -b html -j 2 -W --keep-going docs docs/_build/html
 
 figures: $(VENV)/installed
 	$(BIN)/python docs/make_figures.py

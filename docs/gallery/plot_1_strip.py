@@ -2,9 +2,9 @@
 A strip, and what was measured
 ==============================
 
-A strip of silicone rubber full of magnetised particles is clamped at one end and lies across a magnetic field. It was built and
-measured by Zhao, Kim, Cheng and Zhao (*J. Mech. Phys. Solids* 124, 2019); here it is computed with the material that
-they give, with nothing fitted.
+A strip of silicone rubber full of magnetised particles is clamped at one end and lies across a magnetic field. It was
+built and measured by Zhao, Kim, Cheng and Zhao (*J. Mech. Phys. Solids* 124, 2019); here it is computed with the
+material that they give, with nothing fitted.
 """
 
 import matplotlib.pyplot as plt
@@ -23,8 +23,8 @@ measured = np.array(
 )  # fmt: skip
 
 # %%
-# The remanence points along the strip, the field upwards. The field grows from zero to 50 mT. How long the steps are is the solver's
-# business, but it meets the stops.
+# The remanence points along the strip, the field upwards. The field grows from zero to 50 mT. How long the steps are
+# is the solver's business, but it meets the stops.
 
 length, thickness = 17.2e-3, 0.84e-3
 strip = ms.mesh.rectangle(length, width=5e-3, elements=(16, 2))

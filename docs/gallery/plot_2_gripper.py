@@ -2,8 +2,9 @@
 A gripper opens
 ===============
 
-Twelve arms cover a sphere, clamped near its pole and magnetised along the meridians: away from the clamp above the equator, towards
-it below. A field along the axis opens them. This is the last example of Dadgar-Rad and Hossain's paper.
+Twelve arms cover a sphere, clamped near its pole and magnetised along the meridians: away from the clamp above the
+equator, towards it below. A field along the axis opens them. This is the last example of Dadgar-Rad and Hossain's
+paper.
 """
 
 import matplotlib.pyplot as plt
@@ -47,4 +48,5 @@ draw_sequence(figure, groups, titles, places, scale, view=(0, 20))
 colour_bar(figure, (0.9, 0.3, 0.018, 0.4), scale, "$u_3$ (mm)")
 
 # %%
-# The arms pass through each other if they must: contact is not computed. :doc:`/examples/gripper` says where they would meet.
+# The arms pass through each other if they must: contact is not computed. :doc:`/examples/gripper` says where they
+# would meet.

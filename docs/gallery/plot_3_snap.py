@@ -2,8 +2,9 @@
 An arch that snaps
 ==================
 
-A shallow arch between two hinges is magnetised from both hinges towards the crown. A field downward presses the crown down. At some
-field the arch can no longer stand, and snaps. The path of equilibria does not stop there: it turns back, and is followed by its length.
+A shallow arch between two hinges is magnetised from both hinges towards the crown. A field downward presses the crown
+down. At some field the arch can no longer stand, and snaps. The path of equilibria does not stop there: it turns
+back, and is followed by its length.
 """
 
 import matplotlib.pyplot as plt
@@ -30,8 +31,9 @@ for point in path.critical_points:
     print(f"{point.kind} at {-1e3 * point.flux_density[2]:.2f} mT, negative pivots {point.negative_pivots}")
 
 # %%
-# Critical points are found on the way. At a limit point the field turns; at a bifurcation another path crosses, here one on which the arch
-# tips sideways. Negative pivots count the ways in which a state is unstable: where there are any, marks are hollow.
+# Critical points are found on the way. At a limit point the field turns; at a bifurcation another path crosses, here
+# one on which the arch tips sideways. Negative pivots count the ways in which a state is unstable: where there are
+# any, marks are hollow.
 
 stable = np.array([step.negative_pivots == 0 for step in path.steps])
 crown = path.probe("crown")
@@ -55,5 +57,6 @@ shapes.set(xlabel="$X_1$ (mm)", ylabel="$X_3$ (mm)", title="side view, heights s
 shapes.grid(alpha=0.4)
 
 # %%
-# Between the two limit points a given field has three states. A real arch under a growing field jumps from the first limit point to the lower
-# branch; where it comes to rest is a matter of dynamics, which this program does not compute. More on :doc:`/path-following`.
+# Between the two limit points a given field has three states. A real arch under a growing field jumps from the first
+# limit point to the lower branch; where it comes to rest is a matter of dynamics, which this program does not
+# compute. More on :doc:`/path-following`.

@@ -2,8 +2,9 @@
 A strip rolled up
 =================
 
-No magnets: a moment at its end bends a strip to a circle. The exact solution is known, and a shell that is to be trusted must
-roll up without locking. The problem is one of those of Sze, Liu and Lo (*Finite Elem. Anal. Des.* 40, 2004).
+No magnets: a moment at its end bends a strip to a circle. The exact solution is known, and a shell that is to be
+trusted must roll up without locking. The problem is one of those of Sze, Liu and Lo (*Finite Elem. Anal. Des.* 40,
+2004).
 """
 
 import matplotlib.pyplot as plt
@@ -14,8 +15,9 @@ from magshell.output.bodies import Body, cameras_for, render, shifted
 from magshell.output.panels import colour_scale
 
 # %%
-# A moment :math:`M` bends a strip of bending stiffness :math:`EI` to the radius :math:`EI/M`; with :math:`M = 2\pi EI/L` it closes to a circle.
-# The classical shell without micro-rotations is meant here, so moments work on the director.
+# A moment :math:`M` bends a strip of bending stiffness :math:`EI` to the radius :math:`EI/M`; with :math:`M = 2\pi
+# EI/L` it closes to a circle. The classical shell without micro-rotations is meant here, so moments work on the
+# director.
 
 length, width, thickness, youngs_modulus = 12.0, 1.0, 0.1, 1.2e6
 full = 2 * np.pi * youngs_modulus * width * thickness**3 / 12 / length
@@ -61,4 +63,5 @@ axes.imshow(picture)
 axes.set_axis_off()
 
 # %%
-# The same problem is built in as ``cantilever-moment``; :doc:`/published-shells` compares it and five others with their tables.
+# The same problem is built in as ``cantilever-moment``; :doc:`/published-shells` compares it and five others with
+# their tables.

@@ -2,8 +2,8 @@
 A lifted ring
 =============
 
-A flat ring is slit along a radius. One side of the slit is clamped, a force lifts the other by nearly twice the outer radius. It is one
-of the most quoted tests for shells that are bent and twisted far beyond small rotations.
+A flat ring is slit along a radius. One side of the slit is clamped, a force lifts the other by nearly twice the outer
+radius. It is one of the most quoted tests for shells that are bent and twisted far beyond small rotations.
 """
 
 import matplotlib.pyplot as plt
@@ -14,8 +14,8 @@ from magshell.output.bodies import Body, cameras_for, render, shifted
 from magshell.output.panels import colour_scale
 
 # %%
-# Sze, Liu and Lo (*Finite Elem. Anal. Des.* 40, 2004) tabulate how far the two corners of the lifted side rise. Some of their rows: share
-# of the force, then the rise (m) of the inner corner A and the outer corner B.
+# Sze, Liu and Lo (*Finite Elem. Anal. Des.* 40, 2004) tabulate how far the two corners of the lifted side rise. Some
+# of their rows: share of the force, then the rise (m) of the inner corner A and the outer corner B.
 
 table = np.array(
     [

@@ -2,8 +2,8 @@
 One file, many thicknesses
 ==========================
 
-A problem file describes one problem. In Python it can be read, changed and solved as often as one likes: here a strip with five
-thicknesses, from 0.4 mm to 1.6 mm.
+A problem file describes one problem. In Python it can be read, changed and solved as often as one likes: here a strip
+with five thicknesses, from 0.4 mm to 1.6 mm.
 """
 
 import dataclasses
@@ -55,7 +55,8 @@ problem = ms.problem.load(file)
 problem
 
 # %%
-# A model is plain data that does not change. ``dataclasses.replace`` makes another one with a part exchanged, and checks it again.
+# A model is plain data that does not change. ``dataclasses.replace`` makes another one with a part exchanged, and
+# checks it again.
 
 shell = problem.model.shell
 paths = {}
@@ -64,11 +65,12 @@ for thickness in (0.4e-3, 0.6e-3, 0.8e-3, 1.2e-3, 1.6e-3):
     paths[thickness] = ms.solve(model, ms.Settings(largest_step=0.1))
 
 # %%
-# Left: deflection against the field. Right: the same against the one number on which a thin strip depends,
-# :math:`q = 12\,(B^\mathrm{rem}B/\mu_0E)(L/h)^2`. All thicknesses fall on the curve of the inextensible elastica,
+# Left: deflection against the field. Right: the same against the one number on which a thin strip depends, :math:`q =
+# 12\,(B^\mathrm{rem}B/\mu_0E)(L/h)^2`. All thicknesses fall on the curve of the inextensible elastica,
 # :math:`\vartheta'' = -q\cos\vartheta` with :math:`\vartheta(0) = \vartheta'(1) = 0`. Its first integral is
-# :math:`\vartheta' = \sqrt{2q\,(\sin\vartheta_1 - \sin\vartheta)}`, so that :math:`q` and the deflection are integrals over the angle up to
-# that of the tip, :math:`\vartheta_1`. With :math:`\vartheta = \vartheta_1 - t^2` they are smooth.
+# :math:`\vartheta' = \sqrt{2q\,(\sin\vartheta_1 - \sin\vartheta)}`, so that :math:`q` and the deflection are
+# integrals over the angle up to that of the tip, :math:`\vartheta_1`. With :math:`\vartheta = \vartheta_1 - t^2` they
+# are smooth.
 
 mu, lam, length = shell.material.shear_modulus, shell.material.lame_lambda, 15e-3
 youngs_modulus = mu * (3 * lam + 2 * mu) / (lam + mu)

@@ -18,7 +18,7 @@ from magshell.output.curve import FIELD, abscissa, curves, dress
 from magshell.output.scene import best_axes
 from magshell.output.sketch import Lines, paint, tessellate, triad
 from magshell.output.style import ACCENT, COLOURS, GREY, INK, compact_png
-from magshell.units import FLUX_DENSITY, LENGTH, show
+from magshell.units import FLUX_DENSITY, LENGTH, STRESS, show
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 Rows = Sequence[tuple[str, str]]
 
 DPI = 110
+MODULI = ("shear_modulus", "lame_lambda", "coupling_modulus")
 PLAIN = "#d3dbe6"
 MOST_NAMES = 12
 MOST_ARROWS = 90
@@ -105,12 +106,12 @@ def _mesh_rows(mesh: Mesh) -> list[tuple[str, str]]:
 
 def _model_rows(model: Model) -> list[tuple[str, str]]:
     shell, mesh = model.shell, model.shell.mesh
-    parameters = ", ".join(f"{name} {value:.4g}" for name, value in shell.material._asdict().items())
+    parameters = ", ".join(f"{name} {_parameter(name, value)}" for name, value in shell.material._asdict().items())
     stretch = "" if shell.thickness_stretch == "linear" else f", thickness stretch {shell.thickness_stretch}"
     rows = [
         ("elements, nodes", f"{len(mesh.elements)}, {len(mesh.points)}"),
         ("shell", f"thickness {show(shell.thickness, LENGTH)}, element {shell.element.name}{stretch}"),
-        ("material", f"{type(shell.material).__name__}, {parameters} (SI)"),
+        ("material", f"{type(shell.material).__name__}, {parameters}"),
     ]
     strength = np.linalg.norm(_remanence(model), axis=1)
     if strength.any():
@@ -127,6 +128,11 @@ def _model_rows(model: Model) -> list[tuple[str, str]]:
     if model.probes:
         rows.append(("probes", _listed(list(model.probes))))
     return rows
+
+
+def _parameter(name: str, value: float) -> str:
+    dimension = LENGTH if name == "length_scale" else STRESS if name in MODULI else None
+    return show(value, dimension) if dimension and value else f"{value:g}"
 
 
 def _range(strength: FloatArray) -> str:
