@@ -6,11 +6,8 @@ it, and its results can be looked at, wherever it is.
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
 import pathlib
-import tomllib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
@@ -23,13 +20,12 @@ from magshell.output.files import naming, write_atomically
 from magshell.output.history import HistoryWriter
 from magshell.output.summary import SummaryWriter
 from magshell.output.vtu import VtuWriter
+from magshell.problem import copies
 from magshell.problem.building import Problem
 from magshell.solver import Observer, Path
 from magshell.solver.waypoint import Waypoint, path_through
 
 PROBLEM = "problem.toml"
-# Tables and keys of a problem that its path does not depend on, or may change on the way.
-FREE = ("title", "description", "solver")
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,22 +85,25 @@ def make(source: Problem, directory: pathlib.Path) -> None:
     InputError
         The folder holds somebody's own problem file of that name.
     OSError
-        The disk refuses; the message names the file.
+        A file of the problem has gone, or the disk refuses; the message names the file.
     """
     copy = directory / PROBLEM
-    content = source.text.encode()
+    text, inputs = copies.alone(source)
+    content = text.encode()
     if copy.exists() and copy.read_bytes() != content and not (directory / checkpoint.FOLDER).is_dir():
         raise InputError(f"--out {directory}: the {PROBLEM} there is not of an earlier run; name another folder")
     with naming(directory / checkpoint.FOLDER):
         (directory / checkpoint.FOLDER).mkdir(exist_ok=True)
     checkpoint.forget(directory)
+    for name, own in inputs.items():
+        write_atomically(directory / name, own)
     write_atomically(copy, content)
 
 
 def writers(source: Problem, directory: pathlib.Path) -> list[Observer]:
     """What writes the files of a results folder; the checkpoint first, so that it has all that the others show."""
     return [
-        CheckpointWriter(directory, digest(source)),
+        CheckpointWriter(directory, copies.digest(source)),
         SummaryWriter(directory),
         HistoryWriter(directory),
         VtuWriter(directory),
@@ -112,16 +111,9 @@ def writers(source: Problem, directory: pathlib.Path) -> list[Observer]:
     ]
 
 
-def digest(source: Problem) -> str:
-    """Of all in a problem that its path depends on: the same for a problem and its copy in a results folder."""
-    content = {key: value for key, value in tomllib.loads(source.text).items() if key not in FREE}
-    text = json.dumps(content, sort_keys=True, default=str)
-    return hashlib.sha256(text.encode()).hexdigest()
-
-
 def _waypoints(source: Problem, files: Iterable[pathlib.Path], origins: list[Origin]) -> Iterator[Waypoint]:
     """The steps in order, each checked; what they were made with goes into a list."""
-    own = digest(source)
+    own = copies.digest(source)
     mesh, modes = source.model.shell.mesh, source.model.shell.element.vectors
     shapes = (len(mesh.points), 3), (len(mesh.elements), modes, 3)
     for number, file in enumerate(files):

@@ -49,7 +49,7 @@ class Origin(NamedTuple):
     magshell : str
         Version of this package.
     problem : str
-        Digest of the problem (`magshell.results.digest`).
+        Digest of the problem (`magshell.problem.copies`).
     settings : dict of str
         Those of the solver.
     """
