@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from importlib.metadata import version
 
-from magshell.cli import buckling, check, examples, mesh, reproduce, run, show, sweep, view
+from magshell.cli import buckling, check, examples, mesh, plot, reproduce, run, show, sweep, view
 from magshell.cli.console import complain
 from magshell.cli.status import BAD_INPUT, INTERRUPTED, NOT_SOLVED
 from magshell.errors import InputError
@@ -21,6 +21,7 @@ COMMANDS = {
     "examples": examples,
     "mesh": mesh,
     "sweep": sweep,
+    "plot": plot,
     "view": view,
     "reproduce": reproduce,
 }
@@ -35,6 +36,7 @@ examples:
   magshell run gripper.toml --out results
   magshell mesh part.step --size "0.5 mm" mesh a geometry, or say what a mesh file holds
   magshell view results                   the results as a page for a browser
+  magshell plot results --animate shape.gif
   magshell buckling my-plate.toml --out results
   magshell reproduce --out reproduction   the source paper's examples beside what it says
 

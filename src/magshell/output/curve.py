@@ -71,7 +71,8 @@ def curve_figure(path: Path) -> Figure:
         values, at_critical = curve.values[: len(x)], curve.values[len(x) :]
         label, style = curve.label, curve.style
         axes.plot(x, 1e3 * values, label=label, markersize=5, markeredgecolor="white", markeredgewidth=0.6, **style)
-        axes.plot(critical, 1e3 * at_critical, zorder=4, **CRITICAL)
+        if len(critical):
+            axes.plot(critical, 1e3 * at_critical, zorder=4, **CRITICAL)
         hollow = {"linestyle": "none", "marker": style["marker"], "color": style["color"], "markersize": 5}
         axes.plot(x[unstable], 1e3 * values[unstable], markerfacecolor="white", **hollow)
     if len(critical):

@@ -9,12 +9,15 @@ import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError
+from magshell.output.labels import bar_title, shown_unit
 from magshell.output.registry import Output, find
 from magshell.output.scene import draw
 from magshell.output.style import ACCENT, DPI, GREY, TEXT, TICKS, deliver
 from magshell.output.tessellation import Tessellation
 
 if TYPE_CHECKING:
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.figure import Figure
     from PIL.Image import Image
 
     from magshell.solver.path import Path, Step
@@ -22,8 +25,6 @@ if TYPE_CHECKING:
 INCHES = (10.0, 7.0)
 SCENE = (0.0, 0.0, 0.865, 0.9)
 """Left, bottom, width and height of the scene as fractions of the picture."""
-SHOWN_UNITS = {"m": ("mm", 1e3), "1/m": ("1/mm", 1e-3), "T": ("mT", 1e3), "J": ("µJ", 1e6)}
-LETTERS = {"h": "h/h_0", "phi": r"\varphi", "theta": r"\vartheta", "group": r"\mathrm{group}"}
 
 
 def draw_shape(
@@ -63,9 +64,8 @@ def draw_shape(
     shown = _step(path, step)
     mesh = path.discretisation.mesh
     tessellation = Tessellation(mesh.elements)
-    unit, factor = SHOWN_UNITS.get(output.unit, (output.unit, 1.0))
-    values = factor * _values(path, shown, output, component, tessellation)
-    colours = ScalarMappable(*_colour_scale(values))
+    values = shown_values(path, shown, output, component, tessellation)
+    colours = ScalarMappable(*colour_scale(values))
     rgb = colours.to_rgba(values, bytes=True)[:, :3]
     field = shown.flux_density
     pixels = (round(DPI * INCHES[0] * SCENE[2]), round(DPI * INCHES[1] * SCENE[3]))
@@ -75,10 +75,7 @@ def draw_shape(
     axes = figure.add_axes(SCENE)
     axes.set_axis_off()
     axes.imshow(scene, extent=(0, 1, 0, 1), aspect="auto", interpolation="none")
-    bar = figure.colorbar(colours, cax=figure.add_axes((0.885, 0.16, 0.022, 0.6)))
-    bar.outline.set_visible(False)
-    bar.ax.tick_params(**TICKS)
-    bar.ax.set_title(_letter(output, component) + (f" ({unit})" if unit else ""), pad=14, loc="left", **TEXT)
+    colour_bar(figure, colours, bar_title(output, component))
     size = 1e3 * float(np.linalg.norm(field))
     title = rf"$|B^\mathrm{{ext}}|$ = {size:.4g} mT" if size > 0 else "no field"
     figure.text(0.035, 0.94, title, va="center", **(TEXT | {"fontsize": 20}))
@@ -94,16 +91,27 @@ def _step(path: Path, number: int) -> Step:
     return path.steps[number]
 
 
-def _values(path: Path, step: Step, output: Output, component: int | None, tessellation: Tessellation) -> FloatArray:
-    """The scalar shown, SI, at the points of the tessellation."""
+def colour_bar(figure: Figure, colours: ScalarMappable, title: str) -> None:
+    """The bar on the right of the scene, its quantity above."""
+    bar = figure.colorbar(colours, cax=figure.add_axes((0.885, 0.16, 0.022, 0.6)))
+    bar.outline.set_visible(False)
+    bar.ax.tick_params(**TICKS)
+    bar.ax.set_title(title, pad=14, loc="left", **TEXT)
+
+
+def shown_values(
+    path: Path, step: Step, output: Output, component: int | None, tessellation: Tessellation
+) -> FloatArray:
+    """The scalar shown, in the unit of pictures, at the points of the tessellation."""
+    _, factor = shown_unit(output)
     values = np.asarray(output.evaluate(path.discretisation, step.state), dtype=float)
     values = tessellation.at_points(values) if output.where == "point" else tessellation.on_elements(values)
-    if output.components == 1:
-        return values
-    return np.asarray(np.linalg.norm(values, axis=1) if component is None else values[:, component - 1])
+    if output.components == 3:
+        values = np.linalg.norm(values, axis=1) if component is None else values[:, component - 1]
+    return np.asarray(factor * values)
 
 
-def _colour_scale(values: AnyArray) -> tuple[Any, Any]:
+def colour_scale(values: AnyArray) -> tuple[Any, Any]:
     """Normalisation and colour map: diverging about zero where both signs matter."""
     from matplotlib import colormaps
     from matplotlib.colors import Normalize
@@ -116,13 +124,6 @@ def _colour_scale(values: AnyArray) -> tuple[Any, Any]:
     if min(-low, high) > 0.1 * largest:
         return Normalize(-largest, largest), colormaps["coolwarm"]
     return Normalize(low, high), colormaps["viridis"]
-
-
-def _letter(output: Output, component: int | None) -> str:
-    letter = LETTERS.get(output.symbol, output.symbol)
-    if component is not None:
-        return f"${letter}_{component}$"
-    return f"$|{letter}|$" if output.components == 3 else f"${letter}$"
 
 
 def _label_arrow(axes: Any, ends: FloatArray) -> None:

@@ -226,6 +226,20 @@ class Path:
 
         write_page(self, file, color=color)
 
+    def animate(self, file: str | PathLike[str], color: str = "u3") -> None:
+        """Write the path as an animation, a converged step for each frame.
+
+        Parameters
+        ----------
+        file : path
+            `.gif`, or `.mp4` with the extra `magshell[video]`.
+        color : str
+            Output that colours the shape.
+        """
+        from magshell.output.animation import animate
+
+        animate(self, file, color)
+
     def plot(self, color: str = "u3") -> Any:
         """Picture of the last deformed shape, coloured by a registered output."""
         from magshell.output.pictures import draw_shape

@@ -1,0 +1,92 @@
+"""`magshell plot`."""
+
+from __future__ import annotations
+
+import argparse
+import pathlib
+from typing import TYPE_CHECKING
+
+from magshell.cli.console import complain, console, say
+from magshell.cli.folders import made
+from magshell.cli.status import NOT_SOLVED, SOLVED
+from magshell.cli.work import bar
+from magshell.errors import InputError
+
+if TYPE_CHECKING:
+    from magshell.solver.path import Path, Step
+
+ABOUT = "draw a results folder: curves, shapes, an animation"
+EXAMPLES = """
+examples:
+  magshell plot results                              curve.png and shape-NNNN.png of four steps, into results
+  magshell plot results --color energy --steps 0,5,-1
+  magshell plot results --steps all --out pictures
+  magshell plot results --animate shape.gif          besides, the path as an animation
+  magshell plot results --animate shape.mp4          as a video: pip install 'magshell[video]'
+
+Without --steps the shapes are spread evenly along the path. All of them are seen by one camera, in one scale of colours
+and true to scale. OUTPUT is a name or symbol of the results: u3, u, energy, rotation, thickness_ratio, remanence, ...
+Every frame of an animation is a converged step, seen for as long as the path is to the next one; the last is held.
+A run that was interrupted, or that is still going on, is drawn as far as it came."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What follows the command."""
+    parser.add_argument("directory", metavar="DIR", help="a folder that magshell run has written")
+    parser.add_argument("--color", metavar="OUTPUT", default="u3", help="what colours the shapes (default: u3)")
+    parser.add_argument("--steps", metavar="N,N,...", help="numbers of steps, negative from the end; or: all")
+    parser.add_argument("--animate", metavar="FILE", help="also write an animation: .gif, or .mp4 with an extra")
+    parser.add_argument("--out", metavar="DIR", help="folder of the pictures (default: the results folder)")
+
+
+def run(given: argparse.Namespace) -> int:
+    """Draw."""
+    from magshell.output.animation import animate, draw_steps, require_writer
+    from magshell.output.curve import draw_curve
+    from magshell.output.registry import find
+    from magshell.output.rendering import RenderingUnavailable
+    from magshell.results import read
+
+    find(given.color)
+    if given.animate:
+        require_writer(given.animate)
+    path = read(given.directory).path
+    steps = _steps(path, given.steps)
+    directory = made(pathlib.Path(given.out or given.directory))
+    out = console()
+    draw_curve(path, directory / "curve.png")
+    say(out, f"picture: {directory / 'curve.png'}")
+    try:
+        with bar(out, "drawing shapes") as advance:
+            files = draw_steps(path, steps, directory, given.color, advance)
+        for file in files:
+            say(out, f"picture: {file}")
+        if given.animate:
+            with bar(out, "drawing the frames of the animation") as advance:
+                file = animate(path, given.animate, given.color, advance)
+            say(out, f"animation: {file} ({file.stat().st_size / 1e6:.2g} MB)")
+    except RenderingUnavailable as unavailable:
+        complain(str(unavailable))
+        return NOT_SOLVED
+    return SOLVED
+
+
+def _steps(path: Path, text: str | None) -> list[Step]:
+    """The steps that a user asks for."""
+    from magshell.output.animation import spread
+
+    if text is None:
+        return spread(path)
+    if text == "all":
+        return path.steps
+    count = len(path.steps)
+    numbers = []
+    for part in text.split(","):
+        try:
+            number = int(part)
+        except ValueError:
+            raise InputError(f"--steps {text}: '{part}' is not a number of a step; write 0,5,-1 or all") from None
+        if not -count <= number < count:
+            raise InputError(f"--steps {text}: there is no step {number}; the path has steps 0 to {count - 1}")
+        numbers.append(number % count)
+    return [path.steps[number] for number in dict.fromkeys(numbers)]

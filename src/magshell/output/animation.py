@@ -1,0 +1,308 @@
+"""Pictures of many steps of a path, by one camera and in one scale of colours; and the path as an animation.
+
+Every frame of an animation is a converged step, nothing between steps is invented. Time runs evenly along the path (in
+arc length), so a step is shown until the path would be at the next one; the last is held.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import pathlib
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from magshell.arrays import FloatArray
+from magshell.errors import InputError
+from magshell.output.files import write_atomically
+from magshell.output.labels import bar_title
+from magshell.output.registry import find
+from magshell.output.scene import Camera, best_axes, darkroom, deformed, field_arrow, fit, lettered
+from magshell.output.shape import INCHES, SCENE, colour_bar, colour_scale, shown_values, triad
+from magshell.output.style import ACCENT, DPI, INK
+from magshell.output.tessellation import Tessellation
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+    from magshell.solver.path import Path, Step
+
+FILM_DPI = 100
+SECONDS, HELD = 4.0, 1.5
+"""Of the path from its first to its last step, and of the last step."""
+SHORTEST = 0.04
+"""Of a step, s: steps nearer than this to the one before are left out of an animation."""
+RATE = 25
+"""Pictures in a second of a video."""
+VIDEO = (".mp4", ".mov", ".m4v")
+
+
+class Frame(NamedTuple):
+    """A step of an animation and how long it is seen, s."""
+
+    step: Step
+    seconds: float
+
+
+def frames(path: Path) -> list[Frame]:
+    """The steps of an animation, with times in proportion to the length of the path to the next one."""
+    places = np.array([step.arc_length for step in path.steps])
+    if places[-1] <= places[0]:
+        return [Frame(step, HELD) for step in path.steps[-1:]]
+    times = SECONDS * (places - places[0]) / (places[-1] - places[0])
+    kept = [0]
+    for number in range(1, len(times) - 1):
+        if times[number] - times[kept[-1]] >= SHORTEST and times[-1] - times[number] >= SHORTEST:
+            kept.append(number)
+    kept.append(len(times) - 1)
+    seconds = [*np.diff(times[kept]).tolist(), HELD]
+    return [Frame(path.steps[number], duration) for number, duration in zip(kept, seconds, strict=True)]
+
+
+@contextmanager
+def film(path: Path, steps: Sequence[Step], color: str, dpi: int = DPI) -> Iterator[Callable[[Step], Image]]:
+    """Draw steps by one camera, which sees all of them, with one plotter.
+
+    Parameters
+    ----------
+    path : Path
+    steps : sequence of Step
+        All that will be drawn; the scale of colours is that of them together.
+    color : str
+        Output that colours the shape, as in `magshell.output.registry.find`.
+    dpi : int
+        Size of the pictures: `magshell.output.shape.INCHES` times this, even numbers.
+
+    Yields
+    ------
+    callable
+        From one of the steps to its picture.
+
+    Raises
+    ------
+    InputError
+        No such output.
+    RenderingUnavailable
+        This machine cannot draw without a screen; the message says what to install.
+    """
+    from matplotlib.cm import ScalarMappable
+    from PIL import Image as images
+
+    output, component = find(color)
+    mesh = path.discretisation.mesh
+    cells = Tessellation(mesh.elements)
+    values = {step.number: shown_values(path, step, output, component, cells) for step in steps}
+    colours = ScalarMappable(*colour_scale(np.array([f(v) for v in values.values() for f in (np.min, np.max)])))
+    shape = round(dpi * INCHES[0] * SCENE[2]), round(dpi * INCHES[1] * SCENE[3])
+    camera, arrows = _look(path, steps, cells, shape)
+    front = _front(camera, colours, bar_title(output, component), dpi)
+
+    with darkroom(camera, shape, quick=True) as expose:
+
+        def picture(step: Step) -> Image:
+            rgb = colours.to_rgba(values[step.number], bytes=True)[:, :3]
+            arrow = arrows[step.number]
+            scene = expose(deformed(mesh, cells, step.state.u, rgb, arrow, camera))
+            whole = images.new("RGBA", front.size, "white")
+            whole.alpha_composite(images.fromarray(scene), (0, front.height - shape[1]))
+            whole.alpha_composite(front)
+            head = None if arrow is None else _beyond(camera.on_picture(arrow), shape, front.height)
+            _letter(whole, step, head, dpi)
+            return whole.convert("RGB")
+
+        yield picture
+
+
+def spread(path: Path, count: int = 4) -> list[Step]:
+    """Up to so many steps, evenly along the path (in arc length), the last among them and not the undeformed one."""
+    places = np.array([step.arc_length for step in path.steps])
+    wanted = places[-1] * np.arange(1, count + 1) / count
+    numbers = {int(np.abs(places - place).argmin()) for place in wanted} - {0}
+    return [path.steps[number] for number in sorted(numbers | {len(path.steps) - 1})]
+
+
+def draw_steps(
+    path: Path,
+    steps: Sequence[Step],
+    directory: str | os.PathLike[str],
+    color: str = "u3",
+    advance: Callable[[float], None] = lambda share: None,
+) -> list[pathlib.Path]:
+    """Draw `shape-NNNN.png` for steps of a path, all by one camera and in one scale of colours.
+
+    Raises
+    ------
+    InputError, RenderingUnavailable
+        As of `film`.
+    OSError
+        The disk refuses; the message names the file.
+    """
+    files = []
+    with film(path, steps, color) as picture:
+        for number, step in enumerate(steps, start=1):
+            content = io.BytesIO()
+            picture(step).save(content, format="png", optimize=True)
+            files.append(pathlib.Path(directory) / f"shape-{step.number:04d}.png")
+            write_atomically(files[-1], content.getvalue())
+            advance(number / len(steps))
+    return files
+
+
+def animate(
+    path: Path,
+    file: str | os.PathLike[str],
+    color: str = "u3",
+    advance: Callable[[float], None] = lambda share: None,
+) -> pathlib.Path:
+    """Write the path as an animation.
+
+    Parameters
+    ----------
+    path : Path
+        With at least one step.
+    file : path
+        `.gif`, or `.mp4`, `.mov`, `.m4v` (H.264; needs the extra `magshell[video]`).
+    color : str
+        Output that colours the shape, as in `magshell.output.registry.find`; one scale for all frames.
+    advance : callable
+        Told the share of the work that is done.
+
+    Returns
+    -------
+    pathlib.Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        No such output, a suffix that is none of these, or a video without the extra.
+    RenderingUnavailable
+        This machine cannot draw without a screen; the message says what to install.
+    OSError
+        The disk refuses; the message names the file.
+    """
+    target = pathlib.Path(file)
+    write = require_writer(target)
+    shown = frames(path)
+    pictures = []
+    with film(path, [frame.step for frame in shown], color, FILM_DPI) as picture:
+        for number, frame in enumerate(shown, start=1):
+            pictures.append(picture(frame.step))
+            advance(number / len(shown))
+    write_atomically(target, write(pictures, [frame.seconds for frame in shown]))
+    return target
+
+
+def require_writer(file: str | os.PathLike[str]) -> Callable[[Sequence[Image], Sequence[float]], bytes]:
+    """What turns pictures and their seconds into the content of an animation of this suffix.
+
+    Raises
+    ------
+    InputError
+        A suffix that is none, or a video without the extra.
+    """
+    suffix = pathlib.Path(file).suffix.lower()
+    if suffix == ".gif":
+        return _gif
+    if suffix not in VIDEO:
+        raise InputError(f"{file}: an animation ends in .gif, {', '.join(VIDEO[:-1])} or {VIDEO[-1]}")
+    try:
+        import imageio_ffmpeg  # noqa: F401
+    except ImportError:
+        raise InputError(
+            f"{file}: a video needs another package: pip install 'magshell[video]'. A .gif needs nothing"
+        ) from None
+    return lambda pictures, seconds: _video(pictures, seconds, suffix)
+
+
+def _gif(pictures: Sequence[Image], seconds: Sequence[float]) -> bytes:
+    from PIL.Image import Dither
+
+    content = io.BytesIO()
+    indexed = [picture.quantize(255, dither=Dither.NONE) for picture in pictures]
+    duration = [10 * round(100 * time) for time in seconds]
+    indexed[0].save(content, format="gif", save_all=True, append_images=indexed[1:], duration=duration, loop=0)
+    return content.getvalue()
+
+
+def _video(pictures: Sequence[Image], seconds: Sequence[float], suffix: str) -> bytes:
+    import imageio_ffmpeg
+
+    ends = np.rint(RATE * np.cumsum(seconds)).astype(int)
+    counts = np.maximum(np.diff(ends, prepend=0), 1)
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / f"film{suffix}"
+        ffmpeg = imageio_ffmpeg.write_frames(
+            str(file), pictures[0].size, fps=RATE, codec="libx264", quality=8, macro_block_size=2
+        )
+        ffmpeg.send(None)
+        for picture, count in zip(pictures, counts, strict=True):
+            content = picture.tobytes()
+            for _ in range(count):
+                ffmpeg.send(content)
+        ffmpeg.close()
+        return file.read_bytes()
+
+
+def _look(
+    path: Path, steps: Sequence[Step], cells: Tessellation, shape: tuple[int, int]
+) -> tuple[Camera, dict[int, FloatArray | None]]:
+    """The camera of all steps, and the field arrow of each, as long as the field is strong."""
+    mesh = path.discretisation.mesh
+    extent = np.concatenate([mesh.points, *(mesh.points + step.state.u for step in steps)])
+    axes = best_axes(np.vstack([mesh.points, mesh.points + steps[-1].state.u]))
+    strongest = max(float(np.linalg.norm(step.flux_density)) for step in steps)
+    arrows: dict[int, FloatArray | None] = {}
+    for step in steps:
+        arrow = field_arrow(step.flux_density, extent, axes)
+        if arrow is not None:
+            share = 0.35 + 0.65 * float(np.linalg.norm(step.flux_density)) / strongest
+            arrow = arrow.mean(axis=0) + share * (arrow - arrow.mean(axis=0))
+        arrows[step.number] = arrow
+    places = [lettered(arrow, axes) for arrow in arrows.values() if arrow is not None]
+    return fit(np.concatenate([extent, *places]), axes, shape[0] / shape[1]), arrows
+
+
+def _front(camera: Camera, colours: Any, title: str, dpi: int) -> Image:
+    """What is the same in all pictures: colour bar and directions, on nothing."""
+    from matplotlib.figure import Figure
+    from PIL import Image as images
+
+    figure = Figure(figsize=INCHES, dpi=dpi)
+    axes = figure.add_axes(SCENE)
+    axes.set_axis_off()
+    colour_bar(figure, colours, title)
+    triad(axes, camera.axes)
+    content = io.BytesIO()
+    figure.savefig(content, format="png", transparent=True)
+    return images.open(content).convert("RGBA")
+
+
+def _beyond(ends: FloatArray, shape: tuple[int, int], height: int) -> FloatArray:
+    """Pixel beyond the head of an arrow, from its tail and head in fractions of the scene (from below)."""
+    tail, head = (np.array([x * shape[0], height - y * shape[1]]) for x, y in ends)
+    along = head - tail
+    return np.asarray(head + 0.028 * height * along / max(float(np.linalg.norm(along)), 1e-9))
+
+
+def _letter(picture: Image, step: Step, head: FloatArray | None, dpi: int) -> None:
+    """The strength of the field above, and its letter beyond the arrow."""
+    from matplotlib.font_manager import FontProperties, findfont
+    from PIL import ImageDraw, ImageFont
+
+    points = dpi / 72
+    draw = ImageDraw.Draw(picture)
+    plain = findfont(FontProperties(family="DejaVu Sans"))
+    size = 1e3 * float(np.linalg.norm(step.flux_density))
+    text = f"|B| = {size:.4g} mT" if size > 0 else "no field"
+    place = 0.035 * picture.width, 0.06 * picture.height
+    draw.text(place, text, INK, ImageFont.truetype(plain, 20 * points), anchor="lm")
+    right = 0.86 * picture.width, 0.06 * picture.height
+    draw.text(right, f"step {step.number}", "#6b7280", ImageFont.truetype(plain, 13 * points), anchor="rm")
+    if head is not None:
+        slanted = findfont(FontProperties(family="DejaVu Sans", style="oblique"))
+        draw.text(tuple(head), "B", ACCENT, ImageFont.truetype(slanted, 16 * points), anchor="mm")
