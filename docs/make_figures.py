@@ -1,17 +1,20 @@
 """Solve the examples, draw `docs/images`, write the tables of README.md and accuracy.md and the pages of docs/examples.
 
     python docs/make_figures.py            some minutes, on all cores
+    python docs/make_figures.py remanence  only the pictures of remanence.md and of the flower
 
 Every number in the tables is computed here; what they are compared with is in `magshell.reproduction.references`.
 """
 
 from __future__ import annotations
 
+import argparse
 import pathlib
 from collections.abc import Mapping, Sequence
 
 import example_pages
 import numpy as np
+import remanence_pictures
 from blocks import write_blocks
 from matplotlib.figure import Figure
 
@@ -42,7 +45,13 @@ Paths = Mapping[str, ms.Path]
 
 def main() -> None:
     """Solve, draw, write."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("only", nargs="?", choices=["remanence"], help="make only these")
+    only = parser.parse_args().only
     IMAGES.mkdir(exist_ok=True)
+    remanence_pictures.draw(IMAGES)
+    if only:
+        return
     files = {name: file for example in EXAMPLES for name, file in variants(example).items()}
     files |= {f"built-in {name}": problem.read(name)[1] for name in PROBLEMS}
     files |= {_mesh_name(mesh): gripper_on(mesh) for mesh in MESHES}

@@ -6,7 +6,7 @@ What is drawn in space is made in `marks.py`; here it is rendered, lettered and 
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -77,39 +77,77 @@ def draw_setup(
     """
     from matplotlib.figure import Figure
 
+    pixels = (round(DPI * INCHES[0] * SCENE[2]), round(DPI * INCHES[1] * SCENE[3]))
+    scene = setup_scene(model, pixels, template)
+    figure = Figure(figsize=INCHES, dpi=DPI, facecolor="white")
+    axes = figure.add_axes(SCENE)
+    axes.set_axis_off()
+    axes.imshow(scene.picture, aspect="auto", interpolation="none", extent=(0, 1, 0, 1))
+    for mark in scene.marks:
+        _letter(axes, mark, scene.camera)
+    corner = figure.add_axes((SCENE[2], 0.0, 1.0 - SCENE[2], 0.2))
+    corner.set_axis_off()
+    triad(corner, scene.camera.axes)
+    _scale_bar(figure, scene.camera)
+    figure.text(0.035, 0.94, title, va="center", **(TEXT | {"fontsize": 20}))
+    _legend(figure, model.shell.mesh, scene.marks, template)
+    return deliver(figure, file)
+
+
+class SetupScene(NamedTuple):
+    """The part of the picture that lies in space.
+
+    Attributes
+    ----------
+    picture : AnyArray, shape (height, width, 4)
+        Red, green, blue, opacity.
+    camera : Camera
+    marks : list of Mark
+        What is drawn on the part.
+    """
+
+    picture: AnyArray
+    camera: Camera
+    marks: list[Mark]
+
+
+def setup_scene(model: Model, pixels: tuple[int, int], template: bool = False, bare: bool = False) -> SetupScene:
+    """Draw the part and what is set on it.
+
+    Parameters
+    ----------
+    model : Model
+    pixels : (int, int)
+        Width and height.
+    template : bool
+        As in `draw_setup`.
+    bare : bool
+        The remanence only.
+
+    Raises
+    ------
+    InputError, RenderingUnavailable
+        As `draw_setup`.
+    """
     mesh = model.shell.mesh
     at_nodes = mesh.points[mesh.elements]
     shown = _in_template(model, at_nodes) if template else at_nodes
     extent = np.concatenate([shown.reshape(-1, 3), mesh.points])
-    axes3 = _view(extent)
+    axes = _view(extent)
     size = float(np.linalg.norm(np.ptp(extent, axis=0)))
-    marks = remanence_marks(model, shown, axes3, template)
-    if not template:
-        marks += [*field_marks(model, extent, axes3), *load_marks(model, size, axes3)]
-        marks += [*support_marks(model, size, axes3), *probe_marks(model, size, axes3)]
-    pixels = (round(DPI * INCHES[0] * SCENE[2]), round(DPI * INCHES[1] * SCENE[3]))
+    marks = remanence_marks(model, shown, axes, template)
+    if not (template or bare):
+        marks += [*field_marks(model, extent, axes), *load_marks(model, size, axes)]
+        marks += [*support_marks(model, size, axes), *probe_marks(model, size, axes)]
     kept = np.concatenate([extent, *(mark.extent for mark in marks)])
-    camera = fit(kept, axes3, pixels[0] / pixels[1])
+    camera = fit(kept, axes, pixels[0] / pixels[1])
 
     def place(plotter: Any) -> None:
         _place_body(plotter, mesh, shown, camera, size, template)
         for mark in marks:
             mark.place(plotter)
 
-    picture = photograph(place, camera, pixels)
-    figure = Figure(figsize=INCHES, dpi=DPI, facecolor="white")
-    axes = figure.add_axes(SCENE)
-    axes.set_axis_off()
-    axes.imshow(picture, aspect="auto", interpolation="none", extent=(0, 1, 0, 1))
-    for mark in marks:
-        _letter(axes, mark, camera)
-    corner = figure.add_axes((SCENE[2], 0.0, 1.0 - SCENE[2], 0.2))
-    corner.set_axis_off()
-    triad(corner, camera.axes)
-    _scale_bar(figure, camera)
-    figure.text(0.035, 0.94, title, va="center", **(TEXT | {"fontsize": 20}))
-    _legend(figure, mesh, marks, template)
-    return deliver(figure, file)
+    return SetupScene(photograph(place, camera, pixels), camera, marks)
 
 
 def _in_template(model: Model, at_nodes: FloatArray) -> FloatArray:
