@@ -13,6 +13,8 @@ from magshell.mesh.edges import Edges, edge_keys
 from magshell.mesh.wording import COUNTING, further, listing, place
 
 Array = TypeVar("Array", bound=AnyArray)
+FARTHEST = 1e12
+"""Largest coordinate, m: beyond it no shell exists, and within it no product of lengths overflows."""
 
 
 def float_rows(values: Any, width: int, what: str) -> FloatArray:
@@ -54,10 +56,11 @@ def _expect_rows(shape: tuple[int, ...], width: int | None, what: str) -> None:
 
 def check_numbers(points: FloatArray, elements: IntArray) -> None:
     """Refuse positions that are not finite, impossible node numbers, unused nodes, repeated elements."""
-    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    bad = np.flatnonzero(~(np.abs(points) <= FARTHEST).all(axis=1))
     if bad.size:
         raise MeshError(
-            f"Node {bad[0]} has the position {place(points[bad[0]])}: coordinates must be finite." + further(bad.size)
+            f"Node {bad[0]} has the position {place(points[bad[0]])}: coordinates must be finite, and no larger than "
+            f"{FARTHEST:g} m." + further(bad.size)
         )
     bad = np.flatnonzero(((elements < 0) | (elements >= len(points))).any(axis=1))
     if bad.size:

@@ -6,6 +6,7 @@ import os
 import pathlib
 
 from magshell.errors import InputError
+from magshell.mesh.files.apart import read_apart
 from magshell.mesh.files.assembling import FileMesh, assemble
 from magshell.mesh.files.contents import Contents
 from magshell.mesh.files.paths import GEOMETRY, readable
@@ -62,9 +63,7 @@ def _contents(path: pathlib.Path, name: str) -> Contents:
 
             return read_inp(path.read_bytes(), name)
         case ".vtu" | ".vtk":
-            from magshell.mesh.files.vtk import read_vtk
-
-            return read_vtk(path, name)
+            return read_apart("vtk", path, name)
         case _:
             from magshell.mesh.files.other import read_other
 
@@ -81,6 +80,4 @@ def _msh(path: pathlib.Path, name: str) -> Contents:
     except PlainReaderError as error:
         if not installed():
             raise InputError(f"{error}; or let gmsh read it: {INSTALL}") from None
-    from magshell.mesh.files.from_gmsh import read_with_gmsh
-
-    return read_with_gmsh(path, name)
+    return read_apart("gmsh", path, name)

@@ -37,7 +37,7 @@ def read_vtk(path: pathlib.Path, name: str) -> Contents:
         points = np.array(_array(grid.GetPoints().GetData()), dtype=np.float64)
     types = np.array([], dtype=np.int64)
     if grid.GetNumberOfCells():
-        types = np.array(_array(grid.GetCellTypesArray()), dtype=np.int64)
+        types = np.array([grid.GetCellType(cell) for cell in range(grid.GetNumberOfCells())], dtype=np.int64)
     if not len(types):
         raise InputError(f"{name}: has no cells; it is no mesh, or not a file of VTK, or it is cut short")
     bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
