@@ -1,0 +1,115 @@
+"""The documentation site: built once, strictly, with its examples and its tutorial executed."""
+
+from __future__ import annotations
+
+import html
+import importlib
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+import pytest
+from PIL import Image
+
+import magshell as ms
+
+ROOT = pathlib.Path(__file__).parents[2]
+NOT_PAGES = ("_build", "worked-examples", "generated", "__pycache__")
+GALLERY = sorted(path.stem for path in (ROOT / "docs" / "gallery").glob("plot_*.py"))
+PAGES = sorted(path.relative_to(ROOT / "docs").with_suffix("").as_posix() for path in (ROOT / "docs").glob("*.md"))
+MODULES = ("magshell.mesh", "magshell.magnetics.remanence", "magshell.problem", "magshell.results")
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    """The folder of the built site; its sources are copied, so that nothing of an earlier build is in it."""
+    folder = tmp_path_factory.mktemp("site")
+    shutil.copytree(ROOT / "docs", folder / "docs", ignore=shutil.ignore_patterns(*NOT_PAGES))
+    shutil.copy(ROOT / "CHANGELOG.md", folder)
+    built = subprocess.run(
+        [sys.executable, "-m", "sphinx", "-b", "html", "-j", "2", "-W", "--keep-going", "-q", "docs", "html"],
+        cwd=folder,
+        env={**os.environ, "OMP_NUM_THREADS": "1", "MPLBACKEND": "agg"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert built.returncode == 0, built.stderr[-6000:]
+    return folder / "html"
+
+
+@pytest.fixture(scope="module")
+def pages(site):
+    """Text of every page, by name."""
+    return {path.relative_to(site).as_posix(): path.read_text() for path in site.rglob("*.html")}
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_every_page_is_reached_from_the_front_page(pages, name):
+    linked, waiting = set(), ["index.html"]
+    while waiting:
+        page = waiting.pop()
+        if page in linked or page not in pages:
+            continue
+        linked.add(page)
+        folder = pathlib.PurePosixPath(page).parent
+        for target in re.findall(r'<a[^>]* href="([^"#:]+\.html)', pages[page]):
+            waiting.append(os.path.normpath(folder / target))
+    assert f"{name}.html" in linked, sorted(linked)
+
+
+@pytest.mark.parametrize("name", GALLERY)
+def test_examples_have_pictures(site, pages, name):
+    page = pages[f"worked-examples/{name}.html"]
+    assert re.search(r'<img[^>]* src="(\.\./_images/sphx_glr_|data:image/png)', page), name
+    thumbnail = Image.open(site / "_images" / f"sphx_glr_{name}_thumb.png").convert("L")
+    dark = sum(count for grey, count in enumerate(thumbnail.histogram()) if grey < 200)
+    assert dark > 300, f"{dark} pixels that are not background"
+
+
+def test_the_tutorial_was_executed(pages):
+    text = pages["tutorial.html"]
+    assert "formula 0.0" in text, "the comparison with the formula is not there"
+    assert text.count("data:image/png") + text.count("_images/") >= 5
+    assert "There is no group &#39;lefft&#39;" in text or "There is no group 'lefft'" in text
+
+
+def test_nothing_comes_from_elsewhere(site, pages):
+    loads = (
+        r'<(?:script|img|iframe|source)[^>]* src="([^"]+)"|<link[^>]* rel="(?:stylesheet|preload)"[^>]* href="([^"]+)"'
+    )
+    for name, text in pages.items():
+        for found in re.findall(loads, text):
+            address = html.unescape("".join(found))
+            assert not re.match(r"https?:|//", address), f"{name}: {address}"
+    for sheet in site.rglob("*.css"):
+        remote = re.findall(r"(?:url\(|@import )['\"]?(?:https?:|//)[^)'\"]*", sheet.read_text())
+        assert not remote, f"{sheet.name}: {remote}"
+
+
+def test_formulas_are_drawn(pages):
+    theory = pages["theory.html"]
+    assert theory.count("<math") > 200, theory.count("<math")
+    for formula in re.findall(r"<math.*?</math>", theory, re.DOTALL):
+        assert "\\" not in formula, formula
+
+
+def public_names():
+    """(module as documented, name) of everything public."""
+    yield from (("magshell", name) for name in ms.__all__ if name not in ("mesh", "problem", "remanence", "results"))
+    for module in MODULES:
+        try:
+            names = importlib.import_module(module).__all__
+        except ModuleNotFoundError:
+            continue
+        yield from ((module, name) for name in names)
+
+
+@pytest.mark.parametrize(("module", "name"), public_names())
+def test_the_reference_has_every_public_name(pages, module, name):
+    page = f"api/generated/{module}.{name}.html"
+    assert page in pages, "list it in docs/api/index.md"
+    assert f'id="{module}.{name}"' in pages[page]
