@@ -89,9 +89,10 @@ class Discretisation:
         element, thickness = model.shell.element, model.shell.thickness
         coordinates, normals = mesh.points[mesh.elements], model.normals[mesh.elements]
         shape = interpolation(coordinates, normals, element, model.shell.micro_rotation)
-        geometry = section_geometry(coordinates, normals, shape, element.rule.weights, thickness, LEVELS)
+        points, weights = element.integration(coordinates)
+        geometry = section_geometry(coordinates, normals, shape, weights, thickness, LEVELS)
         _check_thickness(least_shifts(geometry, thickness))
-        functions = element.functions(8, element.rule.points, coordinates)
+        functions = element.functions(8, points, coordinates)
         positions = np.einsum("epn,enx->epx", functions.values, coordinates)
         remanence = np.ascontiguousarray(model.shell.remanence(mesh, positions), dtype=float)
         if not np.all(np.isfinite(remanence)):

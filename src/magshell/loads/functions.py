@@ -22,7 +22,6 @@ import numpy as np
 from magshell.arrays import FloatArray
 from magshell.shell.elements import ElementType
 from magshell.shell.elements.definition import Functions
-from magshell.shell.shape_functions import bubble
 
 
 def loaded(element: ElementType, parent: FloatArray, coordinates: FloatArray) -> Functions:
@@ -31,21 +30,21 @@ def loaded(element: ElementType, parent: FloatArray, coordinates: FloatArray) ->
     if not element.bubble:
         return functions
     c = _bubbles(element, coordinates)[:, None]
-    b, db = bubble(parent)
+    b, db = element.bubbles(parent, coordinates)
     return Functions(
-        functions.values + b[:, None] * c,
-        functions.derivatives + db[:, :, None] * c[:, None],
+        functions.values + b[..., None] * c,
+        functions.derivatives + db[..., None] * c[:, None],
     )
 
 
 def _bubbles(element: ElementType, coordinates: FloatArray) -> FloatArray:
     """c_I (elements, 8)."""
-    points, weights = element.rule
+    points, weights = element.integration(coordinates)
     slopes = element.functions(8, points, coordinates).derivatives
     A = np.einsum("epan,enx->epax", slopes, coordinates)
     metric = np.einsum("epax,epbx->epab", A, A)
-    _, db = bubble(points)
+    _, db = element.bubbles(points, coordinates)
     area = np.sqrt(np.linalg.det(metric)) * weights
-    flux = area[..., None] * np.linalg.solve(metric, np.broadcast_to(db, metric.shape[:-1])[..., None])[..., 0]
+    flux = area[..., None] * np.linalg.solve(metric, db[..., None])[..., 0]
     work = np.einsum("epa,epan->en", flux, slopes)
-    return np.asarray(-work / np.einsum("epa,pa->e", flux, db)[:, None])
+    return np.asarray(-work / np.einsum("epa,epa->e", flux, db)[:, None])

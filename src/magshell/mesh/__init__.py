@@ -6,5 +6,18 @@ from magshell.mesh.files import from_cad, read, write
 from magshell.mesh.generators import annulus, cylinder, rectangle, sphere_patch
 from magshell.mesh.mesh import Mesh
 from magshell.mesh.multiblock import blocks
+from magshell.mesh.triangles import split, triangle_rows
 
-__all__ = ["Mesh", "annulus", "blocks", "cylinder", "from_cad", "read", "rectangle", "sphere_patch", "write"]
+__all__ = [
+    "Mesh",
+    "annulus",
+    "blocks",
+    "cylinder",
+    "from_cad",
+    "read",
+    "rectangle",
+    "sphere_patch",
+    "split",
+    "triangle_rows",
+    "write",
+]

@@ -9,7 +9,7 @@ import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.errors import MeshError
-from magshell.mesh.edges import Edges, edge_keys
+from magshell.mesh.edges import COLLAPSED, Edges, edge_keys, is_triangle
 from magshell.mesh.wording import COUNTING, further, listing, place
 
 Array = TypeVar("Array", bound=AnyArray)
@@ -70,12 +70,14 @@ def check_numbers(points: FloatArray, elements: IntArray) -> None:
             f"Element {bad[0]} has node {wrong}, but nodes are numbered 0 to {len(points) - 1}." + further(bad.size)
         )
     ordered = np.sort(elements, axis=1)
-    bad = np.flatnonzero((ordered[:, 1:] == ordered[:, :-1]).any(axis=1))
+    repeated = (ordered[:, 1:] == ordered[:, :-1]).sum(axis=1)
+    bad = np.flatnonzero(repeated > np.where(is_triangle(elements), 2, 0))
     if bad.size:
         row = ordered[bad[0]]
         raise MeshError(
-            f"Element {bad[0]} has node {row[1:][row[1:] == row[:-1]][0]} twice: its 8 nodes must differ "
-            f"(a triangle made by a repeated corner will not do)." + further(bad.size)
+            f"Element {bad[0]} has node {row[1:][row[1:] == row[:-1]][0]} twice: its 8 nodes must differ, but for a "
+            "triangle with corners a, b, c, which is the row a, b, c, c, ab, bc, c, ca, with ab the middle between a "
+            "and b." + further(bad.size)
         )
     unused = np.flatnonzero(np.bincount(elements.ravel(), minlength=len(points)) == 0)
     if unused.size:
@@ -92,7 +94,7 @@ def _check_duplicates(elements: IntArray) -> None:
     if same.size:
         one, other = sorted((order[same[0]], order[same[0] + 1]))
         raise MeshError(
-            f"Elements {one} and {other} have the same four corners, nodes {listing(elements[one, :4])}: "
+            f"Elements {one} and {other} have the same corners, nodes {listing(dict.fromkeys(elements[one, :4]))}: "
             f"remove one of them." + further(same.size)
         )
 
@@ -102,7 +104,7 @@ def check_connectivity(points: FloatArray, elements: IntArray, edges: Edges) -> 
     _check_roles(points, elements)
     crowded = np.flatnonzero(edges.sharing > 2)
     if crowded.size:
-        owners = np.flatnonzero(edges.edge_of_side == crowded[0]) // 4
+        owners = edges.owner[edges.edge_of_side == crowded[0]]
         one, other = edges.sides[edges.first_side[crowded[0]], :2]
         raise MeshError(
             f"Elements {listing(owners)} share the edge between nodes {one} and {other} at "
@@ -113,7 +115,7 @@ def check_connectivity(points: FloatArray, elements: IntArray, edges: Edges) -> 
     if odd.size:
         ends, side = edges.sides[odd[0]], partner[odd[0]]
         raise MeshError(
-            f"Elements {side // 4} and {odd[0] // 4} share the corners {ends[0]} and {ends[1]} but have "
+            f"Elements {edges.owner[side]} and {edges.owner[odd[0]]} share the corners {ends[0]} and {ends[1]} but have "
             f"different nodes, {edges.sides[side, 2]} and {ends[2]}, in the middle between them: "
             f"they must share that node too." + further(odd.size)
         )
@@ -123,12 +125,12 @@ def check_connectivity(points: FloatArray, elements: IntArray, edges: Edges) -> 
     if twice.size:
         one, other = edges.first_side[order[twice[0]]], edges.first_side[order[twice[0] + 1]]
         raise MeshError(
-            f"Elements {one // 4} and {other // 4} have node {edges.sides[one, 2]} in the middle of two "
+            f"Elements {edges.owner[one]} and {edges.owner[other]} have node {edges.sides[one, 2]} in the middle of two "
             f"different edges, at {place(points[edges.sides[one, 2]])}." + further(twice.size)
         )
     same = np.flatnonzero((edges.sides[:, 0] == edges.sides[partner, 0]) & (partner != np.arange(len(partner))))
     if same.size:
-        one, other = partner[same[0]] // 4, same[0] // 4
+        one, other = edges.owner[partner[same[0]]], edges.owner[same[0]]
         ends = edges.sides[same[0]]
         raise MeshError(
             f"Elements {one} and {other} disagree about which side is up: both walk their common edge from "
@@ -140,7 +142,9 @@ def check_connectivity(points: FloatArray, elements: IntArray, edges: Edges) -> 
 def _check_roles(points: FloatArray, elements: IntArray) -> None:
     corner_in = np.full(len(points), -1)
     corner_in[elements[:, :4].ravel()] = np.repeat(np.arange(len(elements)), 4)
-    middle, side = np.nonzero(corner_in[elements[:, 4:]] >= 0)
+    clashing = corner_in[elements[:, 4:]] >= 0
+    clashing[is_triangle(elements), COLLAPSED] = False
+    middle, side = np.nonzero(clashing)
     if middle.size:
         node = elements[middle[0], 4 + side[0]]
         raise MeshError(

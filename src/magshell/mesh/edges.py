@@ -6,23 +6,27 @@ from typing import NamedTuple
 
 import numpy as np
 
-from magshell.arrays import IntArray
+from magshell.arrays import AnyArray, IntArray
 
 SIDES = np.array([[0, 1, 4], [1, 2, 5], [2, 3, 6], [3, 0, 7]])
 """Local node numbers (end, end, middle) of the four sides, walked counter-clockwise."""
+COLLAPSED = 2
+"""The side that a triangle has not: its corners 3 and 4 are one node."""
 
 
 class Edges(NamedTuple):
     """Sides of the elements and the edges they lie on.
 
-    Side number `4 e + s` is side `s` of element `e`. Two sides lie on one edge when they have the same two
-    ends.
+    Sides are those of element 0, then of element 1 and so on; a triangle has three. Two sides lie on one edge when they
+    have the same two ends.
     """
 
     sides: IntArray
-    """(4 elements, 3): end, end, middle, in the sense in which the element walks its side."""
+    """(sides, 3): end, end, middle, in the sense in which the element walks its side."""
+    owner: IntArray
+    """(sides,): element."""
     edge_of_side: IntArray
-    """(4 elements,): edge number."""
+    """(sides,): edge number."""
     first_side: IntArray
     """(edges,): the lowest side number on the edge."""
     sharing: IntArray
@@ -34,13 +38,20 @@ class Edges(NamedTuple):
         return np.sort(self.first_side[self.sharing == 1])
 
 
+def is_triangle(elements: IntArray) -> AnyArray:
+    """Which rows (n, 8) are triangles: [a, b, c, c, ab, bc, c, ca]."""
+    return np.asarray((elements[:, 2] == elements[:, 3]) & (elements[:, 2] == elements[:, 6]))
+
+
 def find_edges(elements: IntArray) -> Edges:
     """Edges of `elements` (n, 8)."""
     sides = elements[:, SIDES].reshape(-1, 3)
+    real = np.flatnonzero(sides[:, 0] != sides[:, 1])
+    sides = sides[real]
     _, first, edge_of_side, sharing = np.unique(
         edge_keys(sides, int(elements.max()) + 1), return_index=True, return_inverse=True, return_counts=True
     )
-    return Edges(sides, edge_of_side, first, sharing)
+    return Edges(sides, real // 4, edge_of_side, first, sharing)
 
 
 def edge_keys(edges: IntArray, node_count: int) -> IntArray:

@@ -6,7 +6,7 @@ import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import MeshError
-from magshell.mesh.edges import SIDES
+from magshell.mesh.edges import COLLAPSED, SIDES, is_triangle
 from magshell.mesh.wording import COUNTING, further, place
 
 COINCIDENT = 1e-6
@@ -20,11 +20,13 @@ def scaled_jacobians(points: FloatArray, elements: IntArray) -> FloatArray:
 
     At a corner the tangent of an edge with the ends a, b and the middle m is (4 m - 3 a - b) / 2, the
     derivative of its quadratic interpolation. The normal A1 x A2 / (|A1| |A2|) of these tangents is projected
-    on that of the diagonals, so that a corner turned inside out counts negative.
+    on that of the diagonals, so that a corner turned inside out counts negative. Corners 3 and 4 of a triangle are one.
     """
-    x = points[elements]
+    x, triangles = points[elements], is_triangle(elements)
     leaving = 4 * x[:, 4:] - 3 * x[:, :4] - x[:, [1, 2, 3, 0]]
     arriving = 4 * x[:, [7, 4, 5, 6]] - 3 * x[:, :4] - x[:, [3, 0, 1, 2]]
+    leaving[triangles, 2] = leaving[triangles, 3]
+    arriving[triangles, 3] = arriving[triangles, 2]
     normal = np.cross(unit(leaving), unit(arriving))
     result: FloatArray = np.einsum("eci,ei->ec", normal, unit(diagonal_normals(x)))
     return result
@@ -43,9 +45,10 @@ def unit(vectors: FloatArray) -> FloatArray:
 
 
 def chord_lengths(points: FloatArray, elements: IntArray) -> FloatArray:
-    """Straight distance between the ends of each side, (elements, 4) m."""
-    x = points[elements[:, :4]]
+    """Straight distance between the ends of each side, (elements, 4) m; a triangle has its second one twice."""
+    x, triangles = points[elements[:, :4]], is_triangle(elements)
     result: FloatArray = np.linalg.norm(np.roll(x, -1, axis=1) - x, axis=2)
+    result[triangles, COLLAPSED] = result[triangles, COLLAPSED - 1]
     return result
 
 
@@ -94,7 +97,7 @@ def _check_bow_ties(points: FloatArray, elements: IntArray) -> None:
 def _check_middles(points: FloatArray, elements: IntArray) -> None:
     start, end, middle = (points[elements[:, SIDES[:, i]]] for i in range(3))
     chord = end - start
-    offset = (middle - 0.5 * (start + end)) / np.linalg.norm(chord, axis=2, keepdims=True)
+    offset = (middle - 0.5 * (start + end)) / chord_lengths(points, elements)[..., None]
     along = (offset * unit(chord)).sum(axis=2)
     across = np.linalg.norm(offset - along[:, :, None] * unit(chord), axis=2)
     bad, side = np.nonzero((np.abs(along) >= 0.25 - 1e-9) | (across > 0.5))

@@ -1,4 +1,4 @@
-"""The mesh: nodes, 8-node quadrilaterals, named groups of them, and how to find a place on it."""
+"""The mesh: nodes, 8-node quadrilaterals and 6-node triangles, named groups of them, and how to find a place on it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from magshell.arrays import FloatArray, IntArray
+from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.errors import InputError, suggest
 from magshell.mesh.checks import (
     check_connectivity,
@@ -20,7 +20,7 @@ from magshell.mesh.checks import (
     integer_rows,
     locked,
 )
-from magshell.mesh.edges import Edges, find_edges
+from magshell.mesh.edges import Edges, find_edges, is_triangle
 from magshell.mesh.geometry import COINCIDENT, check_shapes
 from magshell.mesh.unmatched import check_unmatched
 from magshell.mesh.wording import place
@@ -28,7 +28,7 @@ from magshell.mesh.wording import place
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Mesh:
-    """A surface of 8-node quadrilaterals in space, checked when it is made.
+    """A surface of 8-node quadrilaterals and 6-node triangles in space, checked when it is made.
 
     Parameters
     ----------
@@ -36,7 +36,8 @@ class Mesh:
         Positions, m.
     elements : (elements, 8)
         Node numbers: four corners, counter-clockwise seen against the director D, then the four mid-side
-        nodes, starting between corners 1 and 2 (the order of VTK_QUADRATIC_QUAD).
+        nodes, starting between corners 1 and 2 (the order of VTK_QUADRATIC_QUAD). A triangle with corners a, b, c is
+        the row a, b, c, c, ab, bc, c, ca, see `magshell.mesh.triangle_rows`.
     element_groups : mapping of name to (k,)
         Element numbers.
     edge_groups : mapping of name to (k, 3)
@@ -76,7 +77,21 @@ class Mesh:
 
     def __repr__(self) -> str:
         names = ", ".join(self.groups) or "none"
-        return f"Mesh({len(self.elements)} elements, {len(self.points)} nodes, groups: {names})"
+        return f"Mesh({self.counts}, {len(self.points)} nodes, groups: {names})"
+
+    @cached_property
+    def triangles(self) -> AnyArray:
+        """Which elements (elements,) are triangles."""
+        return locked(is_triangle(self.elements))
+
+    @property
+    def counts(self) -> str:
+        """How many elements there are, in words: `12 elements`, or with triangles `8 quadrilaterals, 4 triangles`."""
+        triangles = int(self.triangles.sum())
+        if not triangles:
+            return f"{len(self.elements)} elements"
+        quadrilaterals = f"{len(self.elements) - triangles} quadrilaterals, " if not self.triangles.all() else ""
+        return quadrilaterals + f"{triangles} triangles"
 
     def _repr_html_(self) -> str:
         from magshell.output.notebook import mesh_html

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
+from magshell.mesh.edges import is_triangle
 from magshell.mesh.geometry import chord_lengths, diagonal_normals, scaled_jacobians, unit
 from magshell.mesh.mesh import Mesh
 
@@ -15,7 +16,8 @@ class Quality(NamedTuple):
     """Measures of every element, each (elements,) and dimensionless."""
 
     scaled_jacobian: FloatArray
-    """Least sine of the angle between the edges at a corner: 1 for a rectangle, towards 0 unusable."""
+    """Least sine of the angle between the edges at a corner over that of the best shape: 1 for a rectangle or an
+    equilateral triangle, towards 0 unusable."""
     aspect_ratio: FloatArray
     """Longest side over shortest side: 1 for a square."""
     warp: FloatArray
@@ -37,7 +39,8 @@ def measure(mesh: Mesh) -> Quality:
     # The mean plane halves the distance between the two diagonals.
     apart = 0.25 * np.abs(((x[:, 0] - x[:, 1] + x[:, 2] - x[:, 3]) * unit(normals)).sum(axis=1))
     return Quality(
-        scaled_jacobian=scaled_jacobians(mesh.points, mesh.elements).min(axis=1),
+        scaled_jacobian=scaled_jacobians(mesh.points, mesh.elements).min(axis=1)
+        / np.where(is_triangle(mesh.elements), np.sin(np.pi / 3), 1.0),
         aspect_ratio=lengths.max(axis=1) / lengths.min(axis=1),
         warp=apart / np.sqrt(np.linalg.norm(normals, axis=1)),
     )

@@ -8,7 +8,6 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.shell.elements import ElementType
-from magshell.shell.shape_functions import bubble
 
 
 class SectionGeometry(NamedTuple):
@@ -102,7 +101,7 @@ def interpolation(
     micro_rotation : bool
         Without it no node carries a quaternion.
     """
-    parent = element.rule.points
+    parent, _ = element.integration(node_coordinates)
     u = element.functions(8, parent, node_coordinates)
     rest = element.functions(element.rest_nodes, parent, node_coordinates)
     φ = element.functions(element.stretch_nodes, parent, node_coordinates)
@@ -114,7 +113,7 @@ def interpolation(
     centre = element.functions(8, np.zeros((1, 2)), node_coordinates)
     area = _area(centre.derivatives, node_coordinates)
     if element.bubble:
-        enhancement[:, :, :2, -1] = np.sqrt(area)[..., None] * bubble(parent)[1]
+        enhancement[:, :, :2, -1] = np.sqrt(area)[..., None] * element.bubbles(parent, node_coordinates)[1]
     if element.modes:
         ratio = area / _area(u.derivatives, node_coordinates)
         A = np.einsum("epan,enx->epax", u.derivatives, node_coordinates)
@@ -122,7 +121,7 @@ def interpolation(
         dual = np.linalg.solve(A_0 @ np.swapaxes(A_0, -1, -2), A_0)
         leg = np.einsum("eigx,epax->epga", dual, A)
         for number, mode in enumerate(element.modes):
-            f = parent[:, 0] ** mode.xi * parent[:, 1] ** mode.eta
+            f = element.rule.points[:, 0] ** mode.xi * element.rule.points[:, 1] ** mode.eta
             mean = element.rule.weights @ f / element.rule.weights.sum()
             if mode.column == 3:
                 enhancement[:, :, 2, number] = ratio * (f - mean)
@@ -154,7 +153,7 @@ def section_geometry(
     node_coordinates, normals : ndarray, shape (elements, 8, 3)
         m; unit normals at the nodes, shared by the elements that meet there.
     shape : Interpolation
-    weights : ndarray, shape (p,)
+    weights : ndarray, shape (elements, p) or (p,)
         Of the surface rule, on the parent square.
     thickness : float
         m.
@@ -172,7 +171,7 @@ def section_geometry(
     covariant = A[:, :, None] + z[:, None, None] * dD[:, :, None]
     base = np.concatenate([covariant, np.broadcast_to(D[:, :, None], (*covariant.shape[:3], 1, 3))], axis=3)
     G = np.swapaxes(np.linalg.inv(base), -1, -2)
-    volume = np.linalg.det(base) * (0.5 * thickness * z_weights) * weights[:, None]
+    volume = np.linalg.det(base) * (0.5 * thickness * z_weights) * weights[..., None]
     metric = np.einsum("epk,epkax,epkbx->epab", volume, G[..., :2, :], G[..., :2, :])
     return SectionGeometry(*(np.ascontiguousarray(a) for a in (A, D[:, :, 0], dD, z, G, volume, metric)))
 

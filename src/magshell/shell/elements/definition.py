@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.shell.shape_functions import bilinear, gauss_legendre, quadratic_complete, serendipity
+from magshell.shell import triangle
+from magshell.shell.shape_functions import bilinear, bubble, gauss_legendre, quadratic_complete, serendipity
 
 
 class Rule(NamedTuple):
@@ -21,6 +22,18 @@ class Rule(NamedTuple):
 def gauss(count: int) -> Rule:
     """Gauss–Legendre rule of count × count points."""
     return Rule(*gauss_legendre(count))
+
+
+def three_points() -> Rule:
+    """Rule of degree 2 on the triangle: the points where one barycentric coordinate is 2/3 and the others 1/6."""
+    return Rule(*triangle.on_square(0.5 * np.eye(3) + 1.0 / 6.0, np.full(3, 1.0 / 3.0)))
+
+
+class Points(NamedTuple):
+    """Parent points, as many of quadrilaterals as of triangles: both (p, 2)."""
+
+    quadrilaterals: FloatArray
+    triangles: FloatArray
 
 
 class Mode(NamedTuple):
@@ -63,6 +76,8 @@ class ElementType:
     complete : bool
         Whether the 8-node functions hold all quadratic polynomials on straight-sided quadrilaterals
         (`quadratic_complete`) or are the plain serendipity ones.
+    triangle_rule : Rule, optional
+        Rule of triangles (`magshell.shell.triangle`), on the parent square too; None: the type has no triangles.
     """
 
     name: str
@@ -72,18 +87,46 @@ class ElementType:
     modes: tuple[Mode, ...] = ()
     bubble: float = 0.0
     complete: bool = True
+    triangle_rule: Rule | None = None
 
     @property
     def vectors(self) -> int:
         """Number of vectors of the element's own parameters."""
         return len(self.modes) + (self.bubble > 0.0)
 
-    def functions(self, nodes: int, parent: FloatArray, coordinates: FloatArray) -> Functions:
-        """Functions of a field on 4 or 8 nodes at parent points (p, 2) of elements (e, 8, 3)."""
+    def integration(self, coordinates: FloatArray) -> tuple[Points, FloatArray]:
+        """Integration points of elements (e, 8, 3) and weights (e, p) of each.
+
+        Where there are both shapes the shorter of the two rules has its last point again, with weight zero.
+        """
+        triangles = triangle.collapsed(coordinates)
+        rules = [self.rule, self.triangle_rule or self.rule]
+        if triangles.all() or not triangles.any():
+            rules = 2 * [rules[int(triangles.any())]]
+        most = max(len(rule.weights) for rule in rules)
+        places = [np.minimum(np.arange(most), len(rule.weights) - 1) for rule in rules]
+        weights = np.stack([np.pad(rule.weights, (0, most - len(rule.weights))) for rule in rules])
+        points = Points(*(rule.points[place] for rule, place in zip(rules, places, strict=True)))
+        return points, weights[triangles.astype(int)]
+
+    def functions(self, nodes: int, parent: FloatArray | Points, coordinates: FloatArray) -> Functions:
+        """Functions of a field on 4 or 8 nodes of elements (e, 8, 3) at parent points (p, 2), or points of each shape."""
+        points = parent if isinstance(parent, Points) else Points(parent, parent)
+        square = points.quadrilaterals
         if nodes == 8 and self.complete:
-            return Functions(*quadratic_complete(parent, coordinates))
-        plain = serendipity(parent)[:2] if nodes == 8 else bilinear(parent)
-        return Functions(*(np.broadcast_to(a, (len(coordinates), *a.shape)) for a in plain))
+            of_quadrilaterals = quadratic_complete(square, coordinates)
+        else:
+            plain = serendipity(square)[:2] if nodes == 8 else bilinear(square)
+            of_quadrilaterals = tuple(np.broadcast_to(a, (len(coordinates), *a.shape)) for a in plain)
+        of_triangles = (triangle.quadratic if nodes == 8 else triangle.linear)(points.triangles)
+        return Functions(*_by_shape(coordinates, of_quadrilaterals, of_triangles))
+
+    def bubbles(self, parent: FloatArray | Points, coordinates: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Bubble of elements (e, 8, 3) at the same points: (e, p), and its parent derivatives (e, p, 2)."""
+        points = parent if isinstance(parent, Points) else Points(parent, parent)
+        plain = bubble(points.quadrilaterals)
+        of_quadrilaterals = tuple(np.broadcast_to(a, (len(coordinates), *a.shape)) for a in plain)
+        return _by_shape(coordinates, of_quadrilaterals, triangle.bubble(points.triangles))
 
     def carriers(self, elements: np.ndarray, count: int) -> dict[str, np.ndarray]:
         """Which of `count` nodes carry each field: boolean arrays by the names u, w, phi and omega."""
@@ -91,3 +134,15 @@ class ElementType:
         rest[elements[:, : self.rest_nodes]] = True
         stretch[elements[:, : self.stretch_nodes]] = True
         return {"u": np.ones(count, dtype=bool), "w": rest, "phi": stretch, "omega": rest}
+
+
+def _by_shape(
+    coordinates: FloatArray, of_quadrilaterals: tuple[FloatArray, FloatArray], of_triangles: tuple[FloatArray, FloatArray]
+) -> tuple[FloatArray, FloatArray]:
+    """Arrays of each element, with what all triangles share in the rows of triangles."""
+    triangles = triangle.collapsed(coordinates)
+    if not triangles.any():
+        return of_quadrilaterals
+    values, derivatives = (np.array(a) for a in of_quadrilaterals)
+    values[triangles], derivatives[triangles] = of_triangles
+    return values, derivatives

@@ -13,6 +13,8 @@ element, gives three more, and what the points do not see of it is held by itsel
 
 from __future__ import annotations
 
-from magshell.shell.elements.definition import ElementType, gauss
+from magshell.shell.elements.definition import ElementType, gauss, three_points
 
-QUADRATIC = ElementType(name="quadratic", rest_nodes=8, stretch_nodes=4, rule=gauss(2), bubble=1.0)
+QUADRATIC = ElementType(
+    name="quadratic", rest_nodes=8, stretch_nodes=4, rule=gauss(2), bubble=1.0, triangle_rule=three_points()
+)
