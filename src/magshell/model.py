@@ -104,12 +104,14 @@ class Shell:
             if self.element not in ELEMENTS:
                 raise InputError(f"shell: element is '{self.element}'. {suggest(self.element, ELEMENTS)}")
             object.__setattr__(self, "element", ELEMENTS[self.element])
-        if self.mesh.triangles.any() and self.element.triangle_rule is None:
-            able = " or ".join(f"'{name}'" for name, element in ELEMENTS.items() if element.triangle_rule is not None)
-            raise InputError(
-                f"shell: element is '{self.element.name}', which has no triangles, and element "
-                f"{int(np.argmax(self.mesh.triangles))} of the mesh is one; use {able}"
-            )
+        if self.mesh.triangles.any():
+            if self.element.with_triangles is None:
+                able = " or ".join(f"'{name}'" for name, element in ELEMENTS.items() if element.with_triangles)
+                raise InputError(
+                    f"shell: element is '{self.element.name}', which has no triangles, and element "
+                    f"{int(np.argmax(self.mesh.triangles))} of the mesh is one; use {able}"
+                )
+            object.__setattr__(self, "element", self.element.with_triangles)
         if self.thickness_stretch not in STRETCHES:
             raise InputError(
                 f"shell: thickness_stretch is '{self.thickness_stretch}'. {suggest(self.thickness_stretch, STRETCHES)}"

@@ -115,8 +115,8 @@ def check_connectivity(points: FloatArray, elements: IntArray, edges: Edges) -> 
     if odd.size:
         ends, side = edges.sides[odd[0]], partner[odd[0]]
         raise MeshError(
-            f"Elements {edges.owner[side]} and {edges.owner[odd[0]]} share the corners {ends[0]} and {ends[1]} but have "
-            f"different nodes, {edges.sides[side, 2]} and {ends[2]}, in the middle between them: "
+            f"Elements {edges.owner[side]} and {edges.owner[odd[0]]} share the corners {ends[0]} and {ends[1]} but "
+            f"have different nodes, {edges.sides[side, 2]} and {ends[2]}, in the middle between them: "
             f"they must share that node too." + further(odd.size)
         )
     middles = edges.sides[edges.first_side, 2]
@@ -125,8 +125,8 @@ def check_connectivity(points: FloatArray, elements: IntArray, edges: Edges) -> 
     if twice.size:
         one, other = edges.first_side[order[twice[0]]], edges.first_side[order[twice[0] + 1]]
         raise MeshError(
-            f"Elements {edges.owner[one]} and {edges.owner[other]} have node {edges.sides[one, 2]} in the middle of two "
-            f"different edges, at {place(points[edges.sides[one, 2]])}." + further(twice.size)
+            f"Elements {edges.owner[one]} and {edges.owner[other]} have node {edges.sides[one, 2]} in the middle of "
+            f"two different edges, at {place(points[edges.sides[one, 2]])}." + further(twice.size)
         )
     same = np.flatnonzero((edges.sides[:, 0] == edges.sides[partner, 0]) & (partner != np.arange(len(partner))))
     if same.size:

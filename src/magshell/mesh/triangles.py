@@ -18,9 +18,10 @@ _RISING = ((0, 1, 2, 4, 5, 8), (0, 2, 3, 8, 6, 7))
 _FALLING = ((0, 1, 3, 4, 8, 7), (1, 2, 3, 5, 6, 8))
 _CROSSED = ((0, 1, 8, 4, 10, 9), (1, 2, 8, 5, 11, 10), (2, 3, 8, 6, 12, 11), (3, 0, 8, 7, 9, 12))
 """Nodes a, b, c, ab, bc, ca of the pieces: of the eight, the middle (8), half-ways from it to the corners (9 to 12)."""
-_HALF_WAY = np.array(
-    [np.concatenate([np.roll([0, -3, -2, -3], i), np.roll([9, 3, 3, 9], i)]) for i in range(4)], dtype=float
-) / 16.0
+_HALF_WAY = (
+    np.array([np.concatenate([np.roll([0, -3, -2, -3], i), np.roll([9, 3, 3, 9], i)]) for i in range(4)], dtype=float)
+    / 16.0
+)
 """The eight-node functions half-way from the centre to each corner."""
 
 
@@ -79,7 +80,9 @@ def split(mesh: Mesh, pattern: str = "alternating", elements: ArrayLike | None =
         for name, members in mesh.element_groups.items()
     }
     points = np.concatenate([mesh.points, inside.reshape(-1, 3)])
-    return Mesh(points, np.concatenate([np.stack(piece) for piece in pieces]), groups, mesh.edge_groups, mesh.node_groups)
+    return Mesh(
+        points, np.concatenate([np.stack(piece) for piece in pieces]), groups, mesh.edge_groups, mesh.node_groups
+    )
 
 
 def _middles(x: FloatArray, pattern: str, rising: AnyArray) -> FloatArray:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
+from magshell.shell import triangle
 from magshell.shell.elements import ElementType
 
 
@@ -53,9 +54,9 @@ class Interpolation(NamedTuple):
         Functions of the quaternions.
     enhancement : ndarray, shape (elements, p, 3, modes)
         What the element's own parameters add to g_1, g_2, g_3. Enhanced modes: (√A at the centre / √A) f with
-        ∫ f dξ dη = 0, on D or on a dual base vector of the centre, so that constant stress does no work on them; the
-        bubble of u, the last: its derivatives. In g_1 and g_2 times a length of the element, so that all parameters are
-        numbers.
+        ∫ f dξ dη = 0, on D or on a dual base vector of the centre, so that constant stress does no work on them; of
+        triangles the `turning_field`; the bubble of u, the last: its derivatives. In g_1 and g_2 times a length of the
+        element, so that all parameters are numbers.
     """
 
     u: FloatArray
@@ -114,6 +115,11 @@ def interpolation(
     area = _area(centre.derivatives, node_coordinates)
     if element.bubble:
         enhancement[:, :, :2, -1] = np.sqrt(area)[..., None] * element.bubbles(parent, node_coordinates)[1]
+    if element.triangle_rule is not None:
+        triangles = triangle.collapsed(node_coordinates)
+        enhancement[triangles, :, :2, len(element.modes)] = turning_field(
+            element, parent.triangles, node_coordinates[triangles]
+        )
     if element.modes:
         ratio = area / _area(u.derivatives, node_coordinates)
         A = np.einsum("epan,enx->epax", u.derivatives, node_coordinates)
@@ -130,6 +136,29 @@ def interpolation(
                     :, :, mode.column - 1
                 ]
     return Interpolation(*(np.ascontiguousarray(a) for a in (u.derivatives, director, φ.values, rotation, enhancement)))
+
+
+def turning_field(element: ElementType, parent: FloatArray, node_coordinates: FloatArray) -> FloatArray:
+    r"""What the vector of a triangle adds to g_1 and g_2 at parent points (p, 2): (triangles, p, 2).
+
+    The linear fields on a triangle are six, and five are gradients of quadratic functions. The sixth turns about the
+    centre: with f_i = L_j - L_k, (i, j, k) cyclic, F gains
+
+        α ⊗ Σ_i f_i ∇L_i |_centre   (J at the centre / J),    J the area per area of the parent triangle,
+
+    times a length of the element. So with it F holds all fields that are linear on the element; no nodal values make
+    the same, and its integral vanishes, so that constant stress does no work on it.
+    """
+    functions = element.functions(8, parent, node_coordinates)
+    centre = element.functions(8, np.zeros((1, 2)), node_coordinates)
+    A, A_0 = (np.einsum("epan,enx->epax", f.derivatives, node_coordinates) for f in (functions, centre))
+    dual = np.linalg.solve(A_0 @ np.swapaxes(A_0, -1, -2), A_0)[:, 0]
+    L, _ = triangle.barycentric(parent)
+    slopes = triangle.barycentric(np.zeros((1, 2)))[1][0]
+    field = np.einsum("pi,ai,eax->epx", L[:, [1, 2, 0]] - L[:, [2, 0, 1]], slopes, dual)
+    area = _area(centre.derivatives, node_coordinates)
+    ratio = area * (1.0 - parent[:, 1]) / _area(functions.derivatives, node_coordinates)
+    return np.asarray((np.sqrt(area) * ratio)[..., None] * np.einsum("epx,epax->epa", field, A))
 
 
 def _area(derivatives: FloatArray, node_coordinates: FloatArray) -> FloatArray:

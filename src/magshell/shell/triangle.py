@@ -1,7 +1,7 @@
 r"""Functions of triangles, on the parent square.
 
-A triangle is a row of eight nodes whose corners 3 and 4 and the mid-side between them are one node, a quadrilateral with
-that side shrunk to a point: [a, b, c, c, ab, bc, c, ca]. Its parent is the square too, by the map
+A triangle is a row of eight nodes whose corners 3 and 4 and the mid-side between them are one node, a quadrilateral
+with that side shrunk to a point: [a, b, c, c, ab, bc, c, ca]. Its parent is the square too, by the map
 
     L_1 = (1 - ξ)(1 - η)/4,      L_2 = (1 + ξ)(1 - η)/4,      L_3 = (1 + η)/2
 

@@ -77,7 +77,11 @@ class ElementType:
         Whether the 8-node functions hold all quadratic polynomials on straight-sided quadrilaterals
         (`quadratic_complete`) or are the plain serendipity ones.
     triangle_rule : Rule, optional
-        Rule of triangles (`magshell.shell.triangle`), on the parent square too; None: the type has no triangles.
+        Rule of triangles (`magshell.shell.triangle`), on the parent square too; None: the type has no triangles. With
+        it, triangles have one more enhanced vector, that of the `turning_field` of `magshell.shell.geometry`;
+        quadrilaterals beside them have nothing of it.
+    mixed : ElementType, optional
+        The type that stands for this one on meshes with triangles; None: there is none.
     """
 
     name: str
@@ -88,11 +92,17 @@ class ElementType:
     bubble: float = 0.0
     complete: bool = True
     triangle_rule: Rule | None = None
+    mixed: ElementType | None = None
 
     @property
     def vectors(self) -> int:
         """Number of vectors of the element's own parameters."""
-        return len(self.modes) + (self.bubble > 0.0)
+        return len(self.modes) + (self.triangle_rule is not None) + (self.bubble > 0.0)
+
+    @property
+    def with_triangles(self) -> ElementType | None:
+        """What stands for this type on meshes with triangles; None: it has none."""
+        return self.mixed if self.triangle_rule is None else self
 
     def integration(self, coordinates: FloatArray) -> tuple[Points, FloatArray]:
         """Integration points of elements (e, 8, 3) and weights (e, p) of each.
@@ -110,23 +120,23 @@ class ElementType:
         return points, weights[triangles.astype(int)]
 
     def functions(self, nodes: int, parent: FloatArray | Points, coordinates: FloatArray) -> Functions:
-        """Functions of a field on 4 or 8 nodes of elements (e, 8, 3) at parent points (p, 2), or points of each shape."""
+        """Functions of a field on 4 or 8 nodes of elements (e, 8, 3) at parent points (p, 2), all alike or by shape."""
         points = parent if isinstance(parent, Points) else Points(parent, parent)
-        square = points.quadrilaterals
+        square, count = points.quadrilaterals, len(coordinates)
         if nodes == 8 and self.complete:
-            of_quadrilaterals = quadratic_complete(square, coordinates)
+            of_quadrilaterals = Functions(*quadratic_complete(square, coordinates))
         else:
-            plain = serendipity(square)[:2] if nodes == 8 else bilinear(square)
-            of_quadrilaterals = tuple(np.broadcast_to(a, (len(coordinates), *a.shape)) for a in plain)
+            values, derivatives = serendipity(square)[:2] if nodes == 8 else bilinear(square)
+            of_quadrilaterals = Functions(_repeated(values, count), _repeated(derivatives, count))
         of_triangles = (triangle.quadratic if nodes == 8 else triangle.linear)(points.triangles)
-        return Functions(*_by_shape(coordinates, of_quadrilaterals, of_triangles))
+        return _by_shape(coordinates, of_quadrilaterals, Functions(*of_triangles))
 
-    def bubbles(self, parent: FloatArray | Points, coordinates: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Bubble of elements (e, 8, 3) at the same points: (e, p), and its parent derivatives (e, p, 2)."""
+    def bubbles(self, parent: FloatArray | Points, coordinates: FloatArray) -> Functions:
+        """Bubble of elements (e, 8, 3) at parent points likewise: (e, p), and its parent derivatives (e, p, 2)."""
         points = parent if isinstance(parent, Points) else Points(parent, parent)
-        plain = bubble(points.quadrilaterals)
-        of_quadrilaterals = tuple(np.broadcast_to(a, (len(coordinates), *a.shape)) for a in plain)
-        return _by_shape(coordinates, of_quadrilaterals, triangle.bubble(points.triangles))
+        values, derivatives = bubble(points.quadrilaterals)
+        of_quadrilaterals = Functions(_repeated(values, len(coordinates)), _repeated(derivatives, len(coordinates)))
+        return _by_shape(coordinates, of_quadrilaterals, Functions(*triangle.bubble(points.triangles)))
 
     def carriers(self, elements: np.ndarray, count: int) -> dict[str, np.ndarray]:
         """Which of `count` nodes carry each field: boolean arrays by the names u, w, phi and omega."""
@@ -136,13 +146,15 @@ class ElementType:
         return {"u": np.ones(count, dtype=bool), "w": rest, "phi": stretch, "omega": rest}
 
 
-def _by_shape(
-    coordinates: FloatArray, of_quadrilaterals: tuple[FloatArray, FloatArray], of_triangles: tuple[FloatArray, FloatArray]
-) -> tuple[FloatArray, FloatArray]:
-    """Arrays of each element, with what all triangles share in the rows of triangles."""
+def _repeated(array: FloatArray, count: int) -> FloatArray:
+    return np.broadcast_to(array, (count, *array.shape))
+
+
+def _by_shape(coordinates: FloatArray, of_quadrilaterals: Functions, of_triangles: Functions) -> Functions:
+    """Functions of each element, with those that all triangles share in the rows of triangles."""
     triangles = triangle.collapsed(coordinates)
     if not triangles.any():
         return of_quadrilaterals
-    values, derivatives = (np.array(a) for a in of_quadrilaterals)
-    values[triangles], derivatives[triangles] = of_triangles
-    return values, derivatives
+    mixed = Functions(*(np.array(a) for a in of_quadrilaterals))
+    mixed.values[triangles], mixed.derivatives[triangles] = of_triangles
+    return mixed

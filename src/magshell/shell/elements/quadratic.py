@@ -13,8 +13,9 @@ element, gives three more, and what the points do not see of it is held by itsel
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from magshell.shell.elements.definition import ElementType, gauss, three_points
 
-QUADRATIC = ElementType(
-    name="quadratic", rest_nodes=8, stretch_nodes=4, rule=gauss(2), bubble=1.0, triangle_rule=three_points()
-)
+_QUADRILATERALS = ElementType(name="quadratic", rest_nodes=8, stretch_nodes=4, rule=gauss(2), bubble=1.0)
+QUADRATIC = replace(_QUADRILATERALS, mixed=replace(_QUADRILATERALS, triangle_rule=three_points()))
