@@ -96,7 +96,7 @@ def test_unused_nodes(two):
 def test_an_element_twice(two):
     points, elements = two
     turned = elements[1, [1, 2, 3, 0, 5, 6, 7, 4]]
-    refused(points, np.vstack([elements, turned]), "Elements 1 and 2", "same four corners")
+    refused(points, np.vstack([elements, turned]), "Elements 1 and 2", "same corners")
 
 
 def test_neighbours_with_opposite_normals_are_both_named(two):

@@ -6,7 +6,8 @@ On the mid-surface x = Σ N_I x_I with a_α = x,α it has, per unit parent area,
 
 The functions are those of `magshell.loads.functions`: the nodes alone say where the loaded surface is. Their degree is
 2 in ξ and in η, so the integrands are of degree 5, and 3 × 3 points are exact: the sum of the forces, and of their
-moments at the deformed nodes, is that of the surface.
+moments at the deformed nodes, is that of the surface. On triangles, with the bubble, degrees are 7 in ξ and 8 in η, for
+which there are 5 × 5.
 
 The load is conservative on a closed surface, where F_I = ∂(p V)/∂x_I with the enclosed volume V; over any group,
 the variation of p/3 ∫ x · a_1 × a_2 has a further term, p/3 ∮ (x × δx) · dx along the rim. So the tangent is
@@ -35,7 +36,7 @@ from magshell.shell.state import State
 if TYPE_CHECKING:
     from magshell.model import Shell
 
-POINTS = 3
+POINTS, POINTS_WITH_TRIANGLES = 3, 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,9 +65,10 @@ class Pressure:
     def applied(self, shell: Shell, normals: FloatArray) -> Applied:
         """The load on a mesh; conservative where the group is a closed surface (see the module on the others)."""
         with located(self):
-            elements = shell.mesh.elements[shell.mesh.elements_of(self.group)]
+            members = shell.mesh.elements_of(self.group)
+            elements = shell.mesh.elements[members]
             pressure = number("pressure", self.pressure)
-        parent, weights = gauss_legendre(POINTS)
+        parent, weights = gauss_legendre(POINTS_WITH_TRIANGLES if shell.mesh.triangles[members].any() else POINTS)
         functions = loaded(shell.element, parent, shell.mesh.points[elements])
         return _Pressing(
             shell.mesh.points,

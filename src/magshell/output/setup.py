@@ -27,6 +27,7 @@ from magshell.output.scene import (
 from magshell.output.shape import triad
 from magshell.output.style import DPI, GREY, INK, PALE, TEXT, deliver
 from magshell.output.tessellation import SIDES, Tessellation
+from magshell.shell.triangle import REPEATED
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -184,6 +185,7 @@ def _place_body(plotter: Any, mesh: Mesh, shown: FloatArray, camera: Camera, siz
     import pyvista
 
     own = np.arange(8 * len(shown)).reshape(-1, 8)
+    own[np.ix_(mesh.triangles, REPEATED)] = own[mesh.triangles, 2:3]
     cells = Tessellation(own)
     positions = shown.reshape(-1, 3)
     surface = cells.surface(positions)

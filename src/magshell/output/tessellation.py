@@ -1,7 +1,7 @@
-"""Smooth drawing of quadratic quads: many small flat pieces on each curved element.
+"""Smooth drawing of quadratic elements: many small flat pieces on each curved one.
 
-On the parent square the displaced position is x(ξ, η) = Σ N_i(ξ, η) x_i with the eight serendipity functions;
-it is sampled on a regular lattice, and the surface normal is x,ξ × x,η there.
+On the parent square, or the triangle of barycentric coordinates, the displaced position is x = Σ N_i x_i with the eight
+serendipity functions, or the six of the triangle; it is sampled on a regular lattice, with the surface normal there.
 """
 
 from __future__ import annotations
@@ -10,7 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from magshell.arrays import FloatArray, IntArray
+from magshell.arrays import AnyArray, FloatArray, IntArray
+from magshell.mesh.edges import is_triangle
+from magshell.shell import triangle
 from magshell.shell.shape_functions import serendipity
 
 SIDES = np.array([[0, 4, 1], [1, 5, 2], [2, 6, 3], [3, 7, 0]])
@@ -20,15 +22,25 @@ class Surface(NamedTuple):
     """Triangles that follow the curved elements, each element with its own points."""
 
     points: FloatArray
-    """(elements·lattice, 3)"""
+    """(points, 3): those of the quadrilaterals, then those of the triangles"""
     normals: FloatArray
-    """(elements·lattice, 3), of unit length"""
+    """(points, 3), of unit length"""
     triangles: IntArray
     """(triangles, 3) point numbers"""
 
 
+class _Lattice(NamedTuple):
+    """Elements of one shape: their numbers, functions (m, nodes) and derivatives (m, 2, nodes), pieces of one."""
+
+    elements: IntArray
+    nodes: IntArray
+    N: FloatArray
+    dN: FloatArray
+    pieces: IntArray
+
+
 class Tessellation:
-    """Each element cut into `pieces` × `pieces` small quads.
+    """Each quadrilateral cut into `pieces` × `pieces` small ones, each triangle into as many small triangles.
 
     Parameters
     ----------
@@ -38,29 +50,41 @@ class Tessellation:
     """
 
     def __init__(self, elements: IntArray, pieces: int | None = None) -> None:
-        self._elements = elements
         self._pieces = pieces or max(1, min(6, int(600 / len(elements) ** 0.5)))
-        ticks = np.linspace(-1, 1, self._pieces + 1)
-        eta, xi = np.meshgrid(ticks, ticks, indexing="ij")
-        self._N, self._dN, _ = serendipity(np.column_stack([xi.ravel(), eta.ravel()]))
+        triangles = is_triangle(elements)
+        lattices = []
+        if not triangles.all():
+            chosen = np.flatnonzero(~triangles)
+            lattices.append(_Lattice(chosen, elements[chosen], *_square(self._pieces)))
+        if triangles.any():
+            chosen = np.flatnonzero(triangles)
+            lattices.append(_Lattice(chosen, elements[chosen][:, triangle.SLOTS], *_triangle(self._pieces)))
+        self._lattices = lattices
 
     def surface(self, positions: FloatArray) -> Surface:
         """The surface through nodes at these positions, shape (nodes, 3)."""
-        x = positions[self._elements]
-        tangents = np.einsum("man,enk->aemk", self._dN, x)
-        normals = np.cross(tangents[0], tangents[1]).reshape(-1, 3)
-        lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-        normals /= np.where(lengths > 0, lengths, 1)
-        return Surface(self.at_points(positions), normals, self._triangles())
+        normals, triangles, first = [], [], 0
+        for lattice in self._lattices:
+            tangents = np.einsum("man,enk->aemk", lattice.dN, positions[lattice.nodes])
+            normals.append(np.cross(tangents[0], tangents[1]).reshape(-1, 3))
+            starts = first + np.arange(len(lattice.elements)) * len(lattice.N)
+            triangles.append((starts[:, None, None] + lattice.pieces).reshape(-1, 3))
+            first += len(lattice.elements) * len(lattice.N)
+        normal = np.concatenate(normals)
+        lengths = np.linalg.norm(normal, axis=1, keepdims=True)
+        normal /= np.where(lengths > 0, lengths, 1)
+        return Surface(self.at_points(positions), normal, np.concatenate(triangles))
 
     def at_points(self, values: FloatArray) -> FloatArray:
         """Nodal values, shape (nodes,) or (nodes, k), at the points of the surface."""
-        sampled = np.einsum("mn,en...->em...", self._N, values[self._elements])
-        return np.asarray(sampled.reshape(-1, *values.shape[1:]))
+        sampled = [np.einsum("mn,en...->em...", lattice.N, values[lattice.nodes]) for lattice in self._lattices]
+        return np.concatenate([part.reshape(-1, *values.shape[1:]) for part in sampled])
 
-    def on_elements(self, values: FloatArray) -> FloatArray:
+    def on_elements(self, values: AnyArray) -> AnyArray:
         """Element values, shape (elements,) or (elements, k), at the points of the surface."""
-        return np.repeat(values, len(self._N), axis=0)
+        return np.concatenate(
+            [np.repeat(values[lattice.elements], len(lattice.N), axis=0) for lattice in self._lattices]
+        )
 
     def edges(self, positions: FloatArray, triples: IntArray) -> FloatArray:
         """Curves through node triples (end, end, middle).
@@ -78,16 +102,32 @@ class Tessellation:
         N = np.stack([t * (t - 1) / 2, t * (t + 1) / 2, 1 - t**2], axis=1)
         return np.asarray(np.einsum("mn,enk->emk", N, positions[triples]))
 
-    def _triangles(self) -> IntArray:
-        side = self._pieces + 1
-        corner = (np.arange(self._pieces)[:, None] * side + np.arange(self._pieces)).ravel()
-        quads = np.stack([corner, corner + 1, corner + side + 1, corner + side], axis=1)
-        triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
-        first = np.arange(len(self._elements)) * side**2
-        return np.asarray((first[:, None, None] + triangles).reshape(-1, 3))
+
+def _square(pieces: int) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Functions and derivatives on the lattice of the parent square, and its small triangles."""
+    ticks, side = np.linspace(-1, 1, pieces + 1), pieces + 1
+    eta, xi = np.meshgrid(ticks, ticks, indexing="ij")
+    N, dN, _ = serendipity(np.column_stack([xi.ravel(), eta.ravel()]))
+    corner = (np.arange(pieces)[:, None] * side + np.arange(pieces)).ravel()
+    quads = np.stack([corner, corner + 1, corner + side + 1, corner + side], axis=1)
+    return N, dN, np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+
+
+def _triangle(pieces: int) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Functions on the lattice of a triangle, derivatives along its sides 1–2 and 1–3, and its small triangles."""
+    number = -np.ones((pieces + 2, pieces + 2), dtype=np.int64)
+    places = [(i, j) for j in range(pieces + 1) for i in range(pieces + 1 - j)]
+    for count, (i, j) in enumerate(places):
+        number[i, j] = count
+    L = np.array([[pieces - i - j, i, j] for i, j in places]) / pieces
+    N, dN = triangle.six_nodes(L)
+    up = [(number[i, j], number[i + 1, j], number[i, j + 1]) for i, j in places if i + j < pieces]
+    down = [(number[i + 1, j], number[i + 1, j + 1], number[i, j + 1]) for i, j in places if i + j < pieces - 1]
+    return N, dN[:, 1:] - dN[:, :1], np.array(up + down)
 
 
 def element_edges(elements: IntArray) -> IntArray:
     """Every edge of the mesh once, as node triples (end, end, middle), shape (edges, 3)."""
     triples = elements[:, SIDES[:, [0, 2, 1]]].reshape(-1, 3)
+    triples = triples[triples[:, 0] != triples[:, 1]]
     return triples[np.unique(triples[:, 2], return_index=True)[1]]

@@ -13,6 +13,7 @@ import numpy as np
 
 from magshell.output.files import naming, write_atomically
 from magshell.output.registry import OUTPUTS
+from magshell.shell.triangle import REPEATED, SLOTS
 from magshell.solver.events import Observer
 
 if TYPE_CHECKING:
@@ -23,11 +24,12 @@ if TYPE_CHECKING:
     from magshell.solver.settings import Settings
 
 VTK_QUADRATIC_QUAD = 23
+VTK_QUADRATIC_TRIANGLE = 22
 END = b"</VTKFile>\n"
 
 
 class VtuWriter(Observer):
-    """Write every converged step as a file of quadratic quads, which ParaView draws curved.
+    """Write every converged step as a file of quadratic quads and triangles, which ParaView draws curved.
 
     Points are reference positions (m): in ParaView, *Warp By Vector* with `displacement` shows the deformed
     shape. Point and cell arrays are those of `magshell.output.registry`; their units and meaning are in the
@@ -141,9 +143,11 @@ def grid(discretisation: Discretisation, step: Step | CriticalPoint | BucklingMo
     import pyvista
 
     mesh = discretisation.mesh
-    cells = np.insert(mesh.elements, 0, 8, axis=1)
-    types = np.full(len(cells), VTK_QUADRATIC_QUAD, dtype=np.uint8)
-    result = pyvista.UnstructuredGrid(cells.ravel(), types, np.array(mesh.points))
+    cells = np.insert(mesh.elements, 0, np.where(mesh.triangles, len(SLOTS), 8), axis=1)
+    kept = np.ones(cells.shape, dtype=bool)
+    kept[np.ix_(mesh.triangles, 1 + REPEATED)] = False
+    types = np.where(mesh.triangles, VTK_QUADRATIC_TRIANGLE, VTK_QUADRATIC_QUAD).astype(np.uint8)
+    result = pyvista.UnstructuredGrid(cells[kept], types, np.array(mesh.points))
     for output in OUTPUTS.values():
         data = result.point_data if output.where == "point" else result.cell_data
         data.set_array(np.array(output.evaluate(discretisation, step.state)), output.name)

@@ -11,6 +11,7 @@ import numpy as np
 from magshell.arrays import FloatArray, IntArray
 from magshell.mesh import Mesh
 from magshell.mesh.files import FileMesh
+from magshell.mesh.geometry import unit
 from magshell.mesh.quality import worst
 from magshell.nodal import width
 from magshell.problem import load_report, schema
@@ -123,8 +124,7 @@ def _smallest_radius(mesh: Mesh) -> float:
     x = mesh.points[mesh.elements]
     start, end, middle = x[:, :4], np.roll(x[:, :4], -1, axis=1), x[:, 4:]
     inward = 4.0 * _centres(mesh)[:, None] - 3.0 * middle - np.roll(middle, 2, axis=1)
-    normal = np.cross(end - start, inward)
-    normal /= np.linalg.norm(normal, axis=2, keepdims=True)
+    normal = unit(np.cross(end - start, inward))
     rise = np.abs(((middle - 0.5 * (start + end)) * normal).sum(axis=2))
     chord = np.linalg.norm(end - start, axis=2)
     curved = rise > 1e-9 * chord
@@ -144,7 +144,8 @@ def _mesh(problem: Problem, extent: float) -> Iterator[tuple[str, str]]:
         yield from (("changed", change) for change in mesh.origin.changes)
     elif not isinstance(problem.file.mesh, schema.MeshFile):
         yield "generator", problem.file.mesh.generator
-    yield "elements, nodes", f"{len(mesh.elements)}, {len(mesh.points)}"
+    shapes = f" ({mesh.counts})" if mesh.triangles.any() else ""
+    yield "elements, nodes", f"{len(mesh.elements)}{shapes}, {len(mesh.points)}"
     yield (
         "unknowns",
         f"{unknowns - int(problem.model.constraints.fixed.sum())}, and {unknowns} before supports",
