@@ -104,7 +104,7 @@ def check_connectivity(points: FloatArray, elements: IntArray, edges: Edges) -> 
     _check_roles(points, elements)
     crowded = np.flatnonzero(edges.sharing > 2)
     if crowded.size:
-        owners = edges.owner[edges.edge_of_side == crowded[0]]
+        owners = np.flatnonzero(edges.edge_of_side == crowded[0]) // 4
         one, other = edges.sides[edges.first_side[crowded[0]], :2]
         raise MeshError(
             f"Elements {listing(owners)} share the edge between nodes {one} and {other} at "
@@ -115,7 +115,7 @@ def check_connectivity(points: FloatArray, elements: IntArray, edges: Edges) -> 
     if odd.size:
         ends, side = edges.sides[odd[0]], partner[odd[0]]
         raise MeshError(
-            f"Elements {edges.owner[side]} and {edges.owner[odd[0]]} share the corners {ends[0]} and {ends[1]} but "
+            f"Elements {side // 4} and {odd[0] // 4} share the corners {ends[0]} and {ends[1]} but "
             f"have different nodes, {edges.sides[side, 2]} and {ends[2]}, in the middle between them: "
             f"they must share that node too." + further(odd.size)
         )
@@ -125,12 +125,13 @@ def check_connectivity(points: FloatArray, elements: IntArray, edges: Edges) -> 
     if twice.size:
         one, other = edges.first_side[order[twice[0]]], edges.first_side[order[twice[0] + 1]]
         raise MeshError(
-            f"Elements {edges.owner[one]} and {edges.owner[other]} have node {edges.sides[one, 2]} in the middle of "
+            f"Elements {one // 4} and {other // 4} have node {edges.sides[one, 2]} in the middle of "
             f"two different edges, at {place(points[edges.sides[one, 2]])}." + further(twice.size)
         )
-    same = np.flatnonzero((edges.sides[:, 0] == edges.sides[partner, 0]) & (partner != np.arange(len(partner))))
+    alike = (edges.sides[:, 0] == edges.sides[partner, 0]) & (edges.sides[:, 0] != edges.sides[:, 1])
+    same = np.flatnonzero(alike & (partner != np.arange(len(partner))))
     if same.size:
-        one, other = edges.owner[partner[same[0]]], edges.owner[same[0]]
+        one, other = partner[same[0]] // 4, same[0] // 4
         ends = edges.sides[same[0]]
         raise MeshError(
             f"Elements {one} and {other} disagree about which side is up: both walk their common edge from "
@@ -202,7 +203,7 @@ def _edge_rows(values: Any, what: str, node_count: int, edges: Edges) -> IntArra
     wrong = rows[(rows < 0) | (rows >= node_count)]
     if wrong.size:
         raise MeshError(f"{what} has node {listing(wrong)}, but the mesh has nodes 0 to {node_count - 1}.")
-    known = edges.sides[edges.first_side]
+    known = edges.real
     keys, found = edge_keys(known, node_count), edge_keys(rows, node_count)
     position = np.searchsorted(keys, found).clip(max=len(keys) - 1)
     strange = np.flatnonzero((keys[position] != found) | (known[position, 2] != rows[:, 2]))

@@ -17,20 +17,23 @@ COLLAPSED = 2
 class Edges(NamedTuple):
     """Sides of the elements and the edges they lie on.
 
-    Sides are those of element 0, then of element 1 and so on; a triangle has three. Two sides lie on one edge when they
-    have the same two ends.
+    Side number `4 e + s` is side `s` of element `e`. Two sides lie on one edge when they have the same two ends. The
+    side that a triangle has not is there too, with one node in all three places, on an edge that is none.
     """
 
     sides: IntArray
-    """(sides, 3): end, end, middle, in the sense in which the element walks its side."""
-    owner: IntArray
-    """(sides,): element."""
+    """(4 elements, 3): end, end, middle, in the sense in which the element walks its side."""
     edge_of_side: IntArray
-    """(sides,): edge number."""
+    """(4 elements,): edge number."""
     first_side: IntArray
     """(edges,): the lowest side number on the edge."""
     sharing: IntArray
-    """(edges,): number of sides on the edge."""
+    """(edges,): number of sides on the edge; 0 where it is none."""
+
+    @property
+    def real(self) -> IntArray:
+        """The edges that are some: end, end, middle, (k, 3), in rising order of their keys."""
+        return self.sides[self.first_side[self.sharing > 0]]
 
     @property
     def boundary(self) -> IntArray:
@@ -46,12 +49,11 @@ def is_triangle(elements: IntArray) -> AnyArray:
 def find_edges(elements: IntArray) -> Edges:
     """Edges of `elements` (n, 8)."""
     sides = elements[:, SIDES].reshape(-1, 3)
-    real = np.flatnonzero(sides[:, 0] != sides[:, 1])
-    sides = sides[real]
     _, first, edge_of_side, sharing = np.unique(
         edge_keys(sides, int(elements.max()) + 1), return_index=True, return_inverse=True, return_counts=True
     )
-    return Edges(sides, real // 4, edge_of_side, first, sharing)
+    sharing[sides[first, 0] == sides[first, 1]] = 0
+    return Edges(sides, edge_of_side, first, sharing)
 
 
 def edge_keys(edges: IntArray, node_count: int) -> IntArray:

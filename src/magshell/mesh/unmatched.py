@@ -36,12 +36,12 @@ def check_unmatched(points: FloatArray, elements: IntArray, edges: Edges, size: 
     if not sides.size:
         return
     start, end, middle = (points[edges.sides[sides, i]] for i in range(3))
-    tolerance = ON_EDGE * chord_lengths(points, elements).min(axis=1)[edges.owner[sides]]
+    tolerance = ON_EDGE * chord_lengths(points, elements).min(axis=1)[sides // 4]
     reach = np.max([np.linalg.norm(v, axis=1) for v in (start - middle, end - middle)], axis=0)
     near = tree.query_ball_point(middle, reach + tolerance)
     side = np.repeat(np.arange(len(sides)), [len(found) for found in near])
     node = np.fromiter(chain.from_iterable(near), dtype=np.int64, count=len(side))
-    strange = ~(elements[edges.owner[sides[side]]] == node[:, None]).any(axis=1)
+    strange = ~(elements[sides[side] // 4] == node[:, None]).any(axis=1)
     side, node = side[strange], node[strange]
     distance = _distances(points[node], start[side], end[side], middle[side])
     touching = np.flatnonzero(distance <= tolerance[side])
@@ -49,7 +49,7 @@ def check_unmatched(points: FloatArray, elements: IntArray, edges: Edges, size: 
         touched, found = sides[side[touching[0]]], node[touching[0]]
         ends = edges.sides[touched]
         raise MeshError(
-            f"Elements {edges.owner[touched]} and {_owner(elements, found)} do not match: node {found} of the "
+            f"Elements {touched // 4} and {_owner(elements, found)} do not match: node {found} of the "
             f"second at {place(points[found])} lies on the edge of the first between nodes {ends[0]} and "
             f"{ends[1]} without being a node of it. Divide both elements alike along that edge, or leave a "
             f"gap." + further(touching.size)
