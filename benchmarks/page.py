@@ -14,18 +14,14 @@ import time
 
 import numpy as np
 
-import magshell as ms
-from magshell.assembly import Discretisation
-from magshell.linalg.ordering import nested_dissection
 from magshell.output.page import write_page
-from magshell.shell.state import State
-from magshell.solver.path import Path, Step
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "tests" / "browser"))
 
 from chromium import browser, missing
+from rolled import rolled
 
-LENGTH, WIDTH, ELEMENTS, STEPS = 0.1, 0.1, (100, 50), 30
+ELEMENTS, STEPS = (100, 50), 30
 DRAWN = """
 await new Promise(drawn => requestAnimationFrame(() => requestAnimationFrame(drawn)));
 scene.gl.readPixels(0, 0, 1, 1, scene.gl.RGBA, scene.gl.UNSIGNED_BYTE, new Uint8Array(4));
@@ -40,40 +36,11 @@ at("colour").dispatchEvent(new Event("change"));
 """
 
 
-def rolled(elements: tuple[int, int] = ELEMENTS, steps: int = STEPS) -> Path:
-    """A plate clamped at one end and rolled up to a circle, with directors and rotations that go with it."""
-    mesh = ms.mesh.rectangle(LENGTH, WIDTH, elements)
-    rubber = ms.MicropolarNeoHookean(shear_modulus=303e3, lame_lambda=7.3e6, coupling_modulus=30.3e3, length_scale=1e-4)
-    shell = ms.Shell(mesh, 1e-3, rubber, ms.remanence.constant([143e-3, 0, 0]))
-    model = ms.Model(
-        shell, supports=[ms.Clamp("left")], field=ms.UniformField([0, 0, 50e-3]), probes={"tip": (LENGTH, WIDTH / 2, 0)}
-    )
-    settings = ms.Settings()
-    discretisation = Discretisation(model, nested_dissection)
-    path = Path(model, discretisation, settings, "none")
-    rest = discretisation.undeformed()
-    s = mesh.points[:, 0]
-    for number in range(steps + 1):
-        load = number / steps
-        angle = 2 * np.pi * load / LENGTH * s
-        zero = np.zeros_like(s)
-        x = s * np.sinc(angle / np.pi)
-        z = s * np.sin(angle / 2) * np.sinc(angle / (2 * np.pi))
-        u = np.stack([x - s, zero, z], axis=1)
-        w = np.stack([-np.sin(angle), zero, np.cos(angle) - 1], axis=1)
-        q = np.stack([np.cos(angle / 2), zero, -np.sin(angle / 2), zero], axis=1)
-        state = State(u, w, zero, q, rest.alpha)
-        field = load * model.field.vector
-        path.steps.append(Step(number, load, state, 4, 0.0, None, float(load), 0, field, np.zeros(0), 0))
-    path.converged = True
-    return path
-
-
 def main() -> None:
     """Print the figures."""
     if missing():
         raise SystemExit(f"this benchmark needs {missing()}")
-    path = rolled()
+    path = rolled(ELEMENTS, STEPS)
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "view.html"
         begin = time.perf_counter()

@@ -37,8 +37,8 @@ class Curves {
     svg(sample, "path", { d: "M1,7H33", "stroke-dasharray": DASHES[dash], class: "stroke" });
     svg(sample, "path", { d: MARKS[marker], transform: "translate(17 7)", class: "mark" });
     const name = document.createElement("span");
-    name.textContent = label;
-    item.append(name, ` ${component}`);
+    name.textContent = `${label} ${component}`;
+    item.append(name);
     legend.append(item);
   }
 

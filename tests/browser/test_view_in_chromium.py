@@ -1,0 +1,241 @@
+"""The page of a path in a browser: what a person does with it, and what then changes."""
+
+from __future__ import annotations
+
+import io
+import json
+import pathlib
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from chromium import Browser, browser, missing
+from PIL import Image
+from rolled import FIELD, rolled
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+
+from magshell.output.page import write_page
+from magshell.output.registry import OUTPUTS
+from magshell.solver.critical import LIMIT_POINT, CriticalPoint
+from magshell.solver.path import Path
+
+STEPS, UNSTABLE, CRITICAL = 8, 5, 4
+TITLE = 'Größe "5" & <b>bold</b> </script><script>fail()</script> 磁石'
+PROBE = 'tip\'s "end" </script> <i>μ</i>'
+AFTER_DRAWING = "await new Promise(drawn => requestAnimationFrame(() => requestAnimationFrame(drawn)));"
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=f"no test in a browser: {missing()} is not installed")
+
+
+@pytest.fixture(scope="module")
+def path() -> Path:
+    """A plate rolled up in eight steps, with an unstable step, a critical point and a probe of an awkward name."""
+    path = rolled((10, 6), STEPS, PROBE)
+    path.steps[UNSTABLE] = path.steps[UNSTABLE]._replace(negative_pivots=1)
+    at = path.steps[CRITICAL]
+    mode = np.zeros((len(at.state.u), 10))
+    path.critical_points.append(
+        CriticalPoint(1, LIMIT_POINT, 0, at.load_factor, at.flux_density, at.arc_length, at.state, mode, (0, 1))
+    )
+    return path
+
+
+@pytest.fixture(scope="module")
+def file(path: Path, tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
+    """The page, in a folder with a blank and a letter that is not ASCII."""
+    return write_page(path, tmp_path_factory.mktemp("Ergebnis größer") / "view.html", TITLE)
+
+
+@pytest.fixture(scope="module")
+def shared() -> Iterator[Browser]:
+    """One browser for all tests."""
+    with browser() as window:
+        yield window
+
+
+@pytest.fixture
+def window(shared: Browser, file: pathlib.Path) -> Iterator[Browser]:
+    """The page, just opened; whatever a test does, it complains of nothing and asks for nothing."""
+    shared.size(1400, 900)
+    shared.open(file)
+    yield shared
+    assert shared.console() == []
+    assert {address for address in shared.requests() if not address.startswith("data:")} == {file.as_uri()}
+
+
+def shape(window: Browser) -> np.ndarray:
+    """The pixels of the shape alone, without bar and letters."""
+    window.do(AFTER_DRAWING)
+    canvas = window.driver.find_element(By.ID, "canvas")
+    return np.asarray(Image.open(io.BytesIO(canvas.screenshot_as_png)).convert("RGB")).astype(int)
+
+
+def text(window: Browser, identity: str) -> str:
+    return window.driver.find_element(By.ID, identity).text
+
+
+def ring(window: Browser) -> list[float]:
+    """Where the present step is marked on the curves."""
+    rings = window.driver.find_elements(By.CSS_SELECTOR, "#plot .ring")
+    return [float(circle.get_attribute(name)) for circle in rings for name in ("cx", "cy")]
+
+
+def differ(one: np.ndarray, other: np.ndarray) -> float:
+    """Share of the pixels that differ."""
+    return float((one != other).any(axis=-1).mean())
+
+
+def choose(window: Browser, identity: str, value: str) -> None:
+    window.do(
+        "const menu = document.getElementById(given[0]); menu.value = given[1];"
+        "menu.dispatchEvent(new Event('change'));" + AFTER_DRAWING,
+        identity,
+        value,
+    )
+
+
+@pytest.mark.parametrize(("width", "height", "dark"), [(1400, 900, False), (800, 600, True)])
+def test_everything_is_there_at_first(window, path, tmp_path, width, height, dark):
+    window.size(width, height, dark)
+    window.do(AFTER_DRAWING)
+    picture = window.picture()
+    picture.save(tmp_path / "view.png")
+    assert picture.size == (width, height)
+    colours = len(picture.getcolors(width * height))
+    assert colours > 1000, f"{colours} colours, see {tmp_path}"
+    assert text(window, "field") == f"|B| = {1e3 * FIELD:g} mT"
+    assert text(window, "step") == f"step {STEPS} of {STEPS}"
+    assert text(window, "quantity") == "u₃ (mm)"
+    assert len(window.driver.find_elements(By.CSS_SELECTOR, "#compass .field")) == 1
+    overflow = window.driver.execute_script("return document.documentElement.scrollHeight - innerHeight")
+    assert overflow <= 0, f"{overflow} pixels are below the window"
+
+
+def test_names_are_shown_as_they_were_written(window):
+    assert window.driver.title == TITLE
+    assert window.driver.find_element(By.TAG_NAME, "h1").text == TITLE
+    labels = [item.text for item in window.driver.find_elements(By.CSS_SELECTOR, "#legend li")]
+    assert f"{PROBE} u₃" in labels, labels
+    with_type = window.driver.find_elements(By.CSS_SELECTOR, "script[type]")
+    assert len(window.driver.find_elements(By.TAG_NAME, "script")) == len(with_type) + 1
+
+
+def test_slider_moves_shape_mark_and_field(window):
+    slider = window.driver.find_element(By.ID, "slider")
+    before, marked = shape(window), ring(window)
+    slider.send_keys(Keys.ARROW_LEFT)
+    slider.send_keys(Keys.ARROW_LEFT)
+    after = shape(window)
+    assert differ(before, after) > 0.02, differ(before, after)
+    assert text(window, "field") == f"|B| = {1e3 * FIELD * (STEPS - 2) / STEPS:g} mT"
+    moved = np.array(ring(window)) - np.array(marked)
+    assert (moved[::2] < -20).all(), moved
+    window.driver.find_element(By.TAG_NAME, "body").send_keys(Keys.HOME)
+    assert text(window, "field") == "|B| = 0 mT"
+    assert text(window, "step") == f"step 0 of {STEPS}"
+
+
+def test_colour_changes_shape_bar_and_unit(window):
+    first = shape(window)
+    choose(window, "colour", "energy 0")
+    energy = shape(window)
+    assert differ(first, energy) > 0.02, differ(first, energy)
+    assert text(window, "quantity") == "W (µJ)"
+    assert text(window, "meaning") == OUTPUTS["energy"].sentence
+    menu = window.driver.find_element(By.ID, "colour")
+    assert menu.get_attribute("title") == OUTPUTS["energy"].sentence
+    choose(window, "colour", "rotation 3")
+    assert text(window, "quantity") == "|ϑ| (rad)"
+
+
+def test_range_of_colours_is_that_of_path_or_step(window, path):
+    def top() -> float:
+        ticks = window.driver.find_elements(By.CSS_SELECTOR, "#ticks li")
+        return max(float(tick.text.replace("−", "-")) for tick in ticks)
+
+    window.do("go(1);" + AFTER_DRAWING)
+    choose(window, "range", "path")
+    of_path = top()
+    choose(window, "range", "step")
+    of_step = top()
+    u = [1e3 * path.steps[number].state.u[:, 2].max() for number in range(STEPS + 1)]
+    assert 0.7 * max(u) < of_path <= max(u), (of_path, u)
+    assert 0.7 * u[1] < of_step <= u[1], (of_step, u)
+
+
+def test_drag_wheel_and_buttons_move_the_eye(window):
+    canvas = window.driver.find_element(By.ID, "canvas")
+    first = shape(window)
+    ActionChains(window.driver).move_to_element(canvas).click_and_hold().move_by_offset(120, 40).release().perform()
+    turned = shape(window)
+    assert differ(first, turned) > 0.05, differ(first, turned)
+    ActionChains(window.driver).scroll_by_amount(0, -300).perform()
+    window.do("canvas.dispatchEvent(new WheelEvent('wheel', {deltaY: -300, clientX: 300, clientY: 400}));")
+    nearer = shape(window)
+    assert differ(turned, nearer) > 0.05, differ(turned, nearer)
+    ActionChains(window.driver).double_click(canvas).perform()
+    assert differ(first, shape(window)) == 0
+    window.driver.find_element(By.CSS_SELECTOR, "#views button:last-child").click()
+    from_above = shape(window)
+    assert differ(first, from_above) > 0.05, differ(first, from_above)
+
+
+def test_two_fingers_zoom(window):
+    finger = (
+        "const touch = (kind, id, x, y) => canvas.dispatchEvent(new PointerEvent(kind, {pointerId: id, clientX: x,"
+        " clientY: y, pointerType: 'touch'})); canvas.setPointerCapture = () => {}; const before = camera.perPixel;"
+        "touch('pointerdown', 1, 300, 400); touch('pointerdown', 2, 400, 400); touch('pointermove', 2, 500, 400);"
+        "touch('pointerup', 1, 300, 400); touch('pointerup', 2, 500, 400); return before / camera.perPixel;"
+    )
+    assert window.do(finger) == pytest.approx(2.0)
+
+
+def test_click_on_a_curve_goes_to_its_step(window):
+    plot = window.driver.find_element(By.ID, "plot")
+    aside = window.driver.execute_script(
+        "const box = plot.getBoundingClientRect(); const {x, lines} = header.curves;"
+        "return [curves.px(x[3]) - box.width / 2, curves.py(lines[0].y[3]) - box.height / 2].map(Math.round)"
+    )
+    ActionChains(window.driver).move_to_element_with_offset(plot, *aside).click().perform()
+    assert text(window, "step") == f"step 3 of {STEPS}"
+
+
+def test_unstable_steps_and_critical_points_are_marked(window, path):
+    script = "return header.curves.lines.length"
+    lines = window.driver.execute_script(script)
+    hollow = window.driver.find_elements(By.CSS_SELECTOR, "#plot .line .hollow")
+    critical = window.driver.find_elements(By.CSS_SELECTOR, "#plot .critical")
+    assert (len(hollow), len(critical)) == (lines, lines)
+    badge = window.driver.find_element(By.ID, "unstable")
+    assert not badge.is_displayed()
+    window.do(f"go({UNSTABLE});")
+    assert badge.is_displayed()
+
+
+def test_play_runs_through_all_steps(window):
+    window.driver.find_element(By.ID, "play").click()
+    assert window.until("return playing !== null && state.step > 1 && state.step < 8") is True
+    window.until("return playing === null")
+    assert text(window, "step") == f"step {STEPS} of {STEPS}"
+
+
+def test_marks_and_outlines_can_be_shown_and_hidden(window):
+    for box in ("edges", "arrows", "undeformed"):
+        before = shape(window)
+        window.driver.find_element(By.ID, box).click()
+        change = differ(before, shape(window))
+        assert change > 5e-4, (box, change)
+
+
+def test_numbers_of_the_page_are_those_of_the_path(window, path):
+    """Sixteen bits between the least and the largest value of a step."""
+    for name in ("displacement", "energy", "normal"):
+        values = np.asarray(OUTPUTS[name].evaluate(path.discretisation, path.steps[3].state)).reshape(
+            -1, OUTPUTS[name].components
+        )
+        script = "return JSON.stringify(quantities.get(given[0]).columns(3).map(column => [...column]))"
+        read = np.array(json.loads(window.do(script, name))).T
+        step = np.ptp(values, axis=0) / 65534
+        assert (np.abs(read - values) <= 0.5 * step + 1e-6 * np.abs(values).max()).all(), name
