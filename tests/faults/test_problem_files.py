@@ -4,20 +4,26 @@ from __future__ import annotations
 
 import copy
 import re
+import warnings
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
-from hypothesis import HealthCheck, given, settings
+import pytest
+from hypothesis import given
 from hypothesis import strategies as st
-from problem_files import LOADED
+from problem.loaded import EVERY_LOAD
+from problem.magnetised import FIELDS, SURFACES, TEMPLATES
+from problem.test_staged_problems import STAGED
+from problem_files import LOADED, STRIP, with_mesh
 
+import magshell as ms
+from faults.limits import bounded, located, share
 from magshell.errors import InputError
 from magshell.problem import examples
 from magshell.problem.building import Problem, build
 from magshell.problem.reading import check, parse
-from problem.loaded import EVERY_LOAD
-from problem.magnetised import FIELDS, SURFACES, TEMPLATES
-from problem.test_staged_problems import STAGED
+from magshell.problem.report import describe
 
 WORDS = re.compile(r"[\w.+-]+|\S")
 NEW_WORDS = st.one_of(
@@ -49,7 +55,14 @@ NEW_WORDS = st.one_of(
     st.text(max_size=5),
 )
 EXAMPLES = map(examples.text, ("strip-10", "gripper", "pump", "thin-cross"))
-TEXTS = st.sampled_from([LOADED, EVERY_LOAD, STAGED, FIELDS, SURFACES, TEMPLATES, *EXAMPLES])
+FILES = with_mesh(
+    STRIP.replace(
+        'kind = "constant"\nvector = ["143 mT", 0, 0]',
+        'kind = "file"\nfile = "measured.csv"\nflux_density_unit = "mT"\nlength_unit = "mm"',
+    ),
+    '[mesh]\nfile = "part.msh"\nsecond_order = false\n\n[mesh.edge_groups]\nfar = { x1 = "20 mm" }\n\n',
+)
+TEXTS = st.sampled_from([LOADED, EVERY_LOAD, STAGED, FIELDS, SURFACES, TEMPLATES, FILES, *EXAMPLES])
 
 
 @st.composite
@@ -126,24 +139,45 @@ def places(data: Any) -> Iterator[tuple[Any, Any]]:
             yield from places(data[key])
 
 
-def refused_or_a_problem(data: dict[str, Any] | str, name: str) -> None:
-    try:
-        problem = build(check(parse(data, name) if isinstance(data, str) else data, name), name)
-    except InputError as error:
-        lines = str(error).splitlines()
-        assert lines
-        assert all(line.startswith(f"{name}: ") for line in lines), lines
-    else:
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """With the files that a problem names."""
+    folder = tmp_path_factory.mktemp("problem")
+    mesh = ms.mesh.rectangle(20e-3, 5e-3, (4, 1))
+    ms.mesh.write(mesh, folder / "part.msh", "mm")
+    rows = "".join(f"{2.5 + 5 * i},2.5,0,100,0,{i}\n" for i in range(4))
+    (folder / "measured.csv").write_text(f"x1,x2,x3,b1,b2,b3\n{rows}")
+    return folder
+
+
+def refused_or_a_problem(data: dict[str, Any] | str, name: str, folder: Path) -> None:
+    with bounded(), warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            problem = build(check(parse(data, name) if isinstance(data, str) else data, name), name, folder=folder)
+        except InputError as error:
+            located(error, name)
+            return
         assert isinstance(problem, Problem)
+        said = [text for lines in describe(problem).sections.values() for label, text in lines if label != "title"]
+        words = re.findall(r"\w+", " ".join(said))
+        assert not {"nan", "inf"} & set(words) - set(problem.file.probes) - set(problem.model.shell.mesh.node_groups), (
+            said
+        )
 
 
-@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+def test_the_problem_with_files_is_one(folder: Path) -> None:
+    problem = build(check(parse(FILES, "files.toml"), "files.toml"), "files.toml", folder=folder)
+    assert len(problem.model.shell.mesh.elements) == 4
+
+
+@share(0.25)
 @given(text=damaged())
-def test_damaged_text(text: str) -> None:
-    refused_or_a_problem(text, "damaged.toml")
+def test_damaged_text(text: str, folder: Path) -> None:
+    refused_or_a_problem(text, "damaged.toml", folder)
 
 
-@settings(max_examples=400, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@share(0.35)
 @given(data=altered())
-def test_altered_data(data: dict[str, Any]) -> None:
-    refused_or_a_problem(data, "altered.toml")
+def test_altered_data(data: dict[str, Any], folder: Path) -> None:
+    refused_or_a_problem(data, "altered.toml", folder)
