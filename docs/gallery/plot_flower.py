@@ -26,7 +26,7 @@ from magshell.output.setup import draw_setup
 #
 # .. literalinclude:: /gallery/flower/flower.toml
 #    :language: toml
-#    :lines: 11-46
+#    :lines: 10-37
 
 problem = ms.problem.load("flower/flower.toml")
 model = problem.model
