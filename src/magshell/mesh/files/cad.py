@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import os
 import pathlib
+import tempfile
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,7 +16,7 @@ from magshell.mesh.files.assembling import FileMesh, assemble
 from magshell.mesh.files.contents import GROUPED
 from magshell.mesh.files.from_gmsh import contents_of
 from magshell.mesh.files.paths import GEOMETRY, readable
-from magshell.mesh.files.session import quiet, session
+from magshell.mesh.files.session import installed, quiet, session
 from magshell.mesh.files.units import agreed, length_unit
 from magshell.mesh.geometry import diagonal_normals
 from magshell.mesh.quality import worst
@@ -24,12 +26,19 @@ KNOWS_ITS_UNIT = (".step", ".stp", ".iges", ".igs")
 CONVERTED = "mm"
 IGES = (".iges", ".igs")
 """Formats in which a closed surface, as a tube, has its seam twice: the nodes there are joined."""
+SCRIPTS = (".geo", ".geo_unrolled")
+MOST_LEFT = 200
+DRAINED = 0.125
 DEFAULT_ELEMENTS = 800
 """About as many elements does a mesh have whose size nobody said."""
 GOOD = 0.3
 """Worst scaled Jacobian with which the first mesh is taken."""
 USABLE = 0.05
 """Below this a mesh of quadrilaterals is worse than one of triangles."""
+
+
+NO_SIZE = 1e21
+"""Mesh.MeshSizeMax where no file has set it is larger than this."""
 
 
 class Attempt(NamedTuple):
@@ -100,18 +109,22 @@ def from_cad(file: str | os.PathLike[str], size: float | None = None, unit: str 
     if size is not None and not (math.isfinite(size) and size > 0.0):
         raise InputError(f"size = {size!r} is not allowed; it must be a positive length, in m")
     own = agreed(unit, CONVERTED if suffix in KNOWS_ITS_UNIT else None, name)
-    with session(name) as gmsh:
-        _open(gmsh, path, name)
-        scale = length_unit(own)
-        _set_size(gmsh, None if size is None else size / scale, suffix)
-        first = STRUCTURED if suffix == ".geo" and "Transfinite" in path.read_text("utf-8", "replace") else 0
-        return _best(gmsh, name, own, ATTEMPTS[first:])
+    try:
+        with session(name) as gmsh:
+            _open(gmsh, path, name)
+            _set_size(gmsh, None if size is None else size / length_unit(own), suffix)
+            structured = suffix in SCRIPTS and "Transfinite" in path.read_text("utf-8", "replace")
+            return _best(gmsh, name, own, ATTEMPTS[STRUCTURED if structured else 0 :])
+    except InputError:
+        if suffix in SCRIPTS and installed():
+            _drain(name)
+        raise
 
 
 def _open(gmsh: Any, path: pathlib.Path, name: str) -> None:
     """Load the geometry; refuse volumes; name surfaces and curves if nothing has a name."""
-    with quiet():
-        gmsh.open(str(path))
+    with quiet(), tempfile.TemporaryDirectory() as folder:
+        gmsh.open(str(_ended(path, pathlib.Path(folder))))
         gmsh.model.occ.synchronize()
     if gmsh.model.getEntities(3):
         raise InputError(
@@ -120,7 +133,7 @@ def _open(gmsh: Any, path: pathlib.Path, name: str) -> None:
         )
     if not gmsh.model.getEntities(2):
         raise InputError(f"{name}: has no surface that could be meshed")
-    if path.suffix.lower() not in (".geo", ".geo_unrolled"):
+    if path.suffix.lower() not in SCRIPTS:
         # Sheets that touch get common curves; of a .geo file this is its own affair (Coherence).
         gmsh.model.occ.removeAllDuplicates()
         gmsh.model.occ.synchronize()
@@ -128,6 +141,30 @@ def _open(gmsh: Any, path: pathlib.Path, name: str) -> None:
         for dimension in (2, 1):
             for _, entity in gmsh.model.getEntities(dimension):
                 _name_entity(gmsh, dimension, entity)
+
+
+def _ended(path: pathlib.Path, folder: pathlib.Path) -> pathlib.Path:
+    """The file, or of a script whose last line has no end a copy in which it has: gmsh would leave that line out."""
+    if path.suffix.lower() not in SCRIPTS or path.read_bytes()[-1:] in (b"\n", b""):
+        return path
+    copy = folder / path.name
+    copy.write_bytes(path.read_bytes() + b"\n")
+    return copy
+
+
+def _drain(name: str) -> None:
+    """Make gmsh's parser drop the rest of a wrong script, which it would else take for the begin of the next one.
+
+    It drops a word for every file that it opens after having been initialised anew.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        script = pathlib.Path(folder) / "drain.geo"
+        script.write_text(f"Mesh.MeshSizeMin = {DRAINED};\n")
+        for _ in range(MOST_LEFT):
+            with contextlib.suppress(InputError), session(name) as gmsh:
+                gmsh.open(str(script))
+                if gmsh.option.getNumber("Mesh.MeshSizeMin") == DRAINED:
+                    return
 
 
 def _name_entity(gmsh: Any, dimension: int, entity: int) -> None:
@@ -142,14 +179,18 @@ def _name_entity(gmsh: Any, dimension: int, entity: int) -> None:
 def _set_size(gmsh: Any, size: float | None, suffix: str) -> None:
     """The size of elements in the file's unit: as asked, else as the file says, else from the area."""
     option = gmsh.option.setNumber
-    if size is None and suffix in (".geo", ".geo_unrolled"):
+    if size is None and suffix in SCRIPTS:
         points = gmsh.model.getEntities(0)
-        if len(gmsh.model.mesh.field.list()) or (points and np.any(gmsh.model.mesh.getSizes(points))):
+        said = gmsh.option.getNumber("Mesh.MeshSizeMax") < NO_SIZE or gmsh.option.getNumber(
+            "Mesh.MeshSizeFromCurvature"
+        )
+        if said or len(gmsh.model.mesh.field.list()) or (points and np.any(gmsh.model.mesh.getSizes(points))):
             return
     if size is None:
         size = _size_from_area(gmsh)
     for fixed in ("MeshSizeFromPoints", "MeshSizeFromCurvature", "MeshSizeExtendFromBoundary"):
         option(f"Mesh.{fixed}", 0)
+    option("Mesh.MeshSizeFactor", 1)
     option("Mesh.MeshSizeMin", size)
     option("Mesh.MeshSizeMax", size)
 
@@ -198,6 +239,20 @@ def _meshed(gmsh: Any, name: str, unit: str, attempt: Attempt) -> _Candidate:
     gmsh.model.mesh.setOrder(2)
     if name.lower().endswith(IGES):
         gmsh.model.mesh.removeDuplicateNodes()
+    _put_on_surfaces(gmsh)
     mesh = assemble(contents_of(gmsh, name), name, unit, second_order=False)
     triangles = int((mesh.elements[:, 2] == mesh.elements[:, 3]).sum())
     return _Candidate(mesh, triangles, worst(mesh)["scaled_jacobian"].value)
+
+
+def _put_on_surfaces(gmsh: Any) -> None:
+    """Move the nodes inside curved surfaces onto them: quasi-structured meshes come 1e-3 of the radius near."""
+    for dimension, surface in gmsh.model.getEntities(2):
+        if gmsh.model.getType(dimension, surface) in ("Plane", "Discrete surface"):
+            continue
+        tags, positions, _ = gmsh.model.mesh.getNodes(dimension, surface)
+        if not len(tags):
+            continue
+        closest, _ = gmsh.model.getClosestPoint(dimension, surface, positions)
+        for tag, position in zip(tags, np.reshape(closest, (-1, 3)), strict=True):
+            gmsh.model.mesh.setNode(tag, position, [])

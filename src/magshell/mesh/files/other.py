@@ -54,14 +54,15 @@ def read_other(path: pathlib.Path, name: str) -> Contents:
     except Exception as error:
         reason = shortened(" ".join(str(error).split())) or type(error).__name__
         raise InputError(f"{name}: meshio cannot read it: {reason}") from None
-    return _contents(mesh, name)
+    return contents_of_meshio(mesh, name)
 
 
 def _last(text: str) -> str:
     return ([line for line in text.splitlines() if line.strip()] or ["it is damaged, or of another kind"])[-1]
 
 
-def _contents(mesh: Any, name: str) -> Contents:
+def contents_of_meshio(mesh: Any, name: str) -> Contents:
+    """Points, cells and sets of a `meshio.Mesh`."""
     points = np.array(mesh.points, dtype=np.float64)
     if points.ndim != 2 or points.shape[1] not in (2, 3) or not np.isfinite(points).all():
         raise InputError(f"{name}: its points do not have two or three finite coordinates")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -48,7 +49,7 @@ def session(name: str) -> Iterator[Any]:
     except InputError:
         raise
     except Exception as error:  # gmsh raises Exception itself
-        reason = " ".join((gmsh.logger.getLastError() or str(error)).split())
+        reason = re.sub(rf"'[^']*{re.escape(name)}', ", "", " ".join(str(error).split()))
         raise InputError(f"{name}: gmsh cannot do it: {_bearable(reason)}") from None
     finally:
         gmsh.finalize()

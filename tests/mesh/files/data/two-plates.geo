@@ -1,0 +1,33 @@
+// Two plates in mm with a common edge. The .msh files beside this were made of it by gmsh 4.15.2:
+//   gmsh two-plates.geo -2 -format msh41 -o two-plates-41.msh        and likewise msh22, msh40 and msh41 -bin
+Mesh.ElementOrder = 2;
+Mesh.SecondOrderIncomplete = 1;
+Point(1) = {0, 0, 0};
+Point(2) = {3, 0, 0};
+Point(3) = {5, 0, 0};
+Point(4) = {5, 2, 0};
+Point(5) = {3, 2, 0};
+Point(6) = {0, 2, 0};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 5};
+Line(5) = {5, 6};
+Line(6) = {6, 1};
+Line(7) = {2, 5};
+Curve Loop(1) = {1, 7, 5, 6};
+Plane Surface(1) = {1};
+Curve Loop(2) = {4, -7, 2, 3};
+Plane Surface(2) = {-2};
+Transfinite Curve {1, 5} = 4;
+Transfinite Curve {2, 4, 3, 6, 7} = 3;
+Transfinite Surface {1, 2};
+Recombine Surface {1};
+Recombine Surface {2};
+Physical Surface("left plate", 1) = {1};
+Physical Surface(7) = {2};
+Physical Surface("both", 8) = {1, 2};
+Physical Curve("clamped", 1) = {6};
+Physical Curve(4) = {7};
+Physical Curve("both", 5) = {3};
+Physical Point("tip", 1) = {4};

@@ -1,0 +1,201 @@
+"""Geometry meshed by gmsh: quadrilaterals on the true surface, groups, units, sizes, errors in words."""
+
+from __future__ import annotations
+
+import builtins
+import importlib.util
+import pathlib
+import signal
+
+import numpy as np
+import pytest
+
+import magshell as ms
+from magshell.errors import InputError
+from magshell.mesh.files.session import DEBIAN, session
+from magshell.mesh.quality import worst
+
+from .same import described
+
+DATA = pathlib.Path(__file__).parent / "data"
+needs_gmsh = pytest.mark.skipif(importlib.util.find_spec("gmsh") is None, reason="needs the extra magshell[gmsh]")
+
+
+def made(tmp_path, names, build):
+    """Files of a geometry that `build` makes with gmsh's OpenCASCADE kernel."""
+    with session("test") as gmsh:
+        build(gmsh.model.occ)
+        gmsh.model.occ.synchronize()
+        for name in names:
+            gmsh.write(str(tmp_path / name))
+    return [tmp_path / name for name in names]
+
+
+def tube(occ):
+    """Radius 8, length 30, without its ends."""
+    solid = occ.addCylinder(0, 0, 0, 0, 0, 30, 8)
+    occ.synchronize()
+    surfaces = occ.getEntities(2)
+    side = max(surfaces, key=lambda entity: occ.getMass(*entity))
+    occ.remove([(3, solid)])
+    occ.remove([entity for entity in surfaces if entity != side], recursive=True)
+
+
+@pytest.fixture(scope="module")
+def flower():
+    return ms.mesh.from_cad(DATA / "flower.geo", size=1.2e-3, unit="mm")
+
+
+@needs_gmsh
+def test_the_flower(flower):
+    """Only good quadrilaterals; petals and rim as groups; the nodes of the rim, mid-sides too, on the circle."""
+    assert flower.groups == [*(f"petal-{k}" for k in range(1, 7)), "disc", "rim"]
+    assert sum(len(rows) for rows in flower.element_groups.values()) == len(flower.elements)
+    assert (flower.elements[:, 2] != flower.elements[:, 3]).all()
+    corner = worst(flower)["scaled_jacobian"]
+    print(f"{len(flower.elements)} elements, worst corner {corner.value:.3f}")
+    assert corner.value > 0.3
+    rim = flower.points[flower.nodes_of("rim")]
+    off = np.abs(np.hypot(rim[:, 0], rim[:, 1]) - 4e-3).max()
+    print(f"rim off its circle {off:.1e} m")
+    assert off < 1e-9
+    assert flower.origin.changes == ()
+
+
+@needs_gmsh
+def test_a_flower_is_written_and_read(flower, tmp_path):
+    ms.mesh.write(flower, tmp_path / "flower.msh", unit="mm")
+    again = ms.mesh.read(tmp_path / "flower.msh")
+    assert described(again) == described(flower)
+    assert np.abs(again.points - flower.points).max() < 1e-15 * flower.size / 1e-3
+
+
+@needs_gmsh
+def test_step_iges_and_brep_of_one_tube(tmp_path):
+    """In metres whatever the file; closed along its seam; every node on the cylinder."""
+    for file, unit in zip(
+        made(tmp_path, ("tube.step", "tube.iges", "tube.brep"), tube), (None, None, "mm"), strict=True
+    ):
+        mesh = ms.mesh.from_cad(file, size=4e-3, unit=unit)
+        off = np.abs(np.hypot(mesh.points[:, 0], mesh.points[:, 1]) - 8e-3).max()
+        ends = np.isin(np.round(mesh.points[mesh.boundary_edges, 2], 9), (0.0, 0.03))
+        print(f"{file.name}: {len(mesh.elements)} elements, off the cylinder {off:.1e} m, {mesh.groups}")
+        assert off < 1e-8
+        assert ends.all()
+        assert np.isclose(np.ptp(mesh.points[:, 2]), 0.03, rtol=1e-9)
+        assert "surface-1" in mesh.element_groups
+        assert any(name.startswith("curve-") for name in mesh.edge_groups)
+
+
+@needs_gmsh
+def test_the_size_of_the_elements(tmp_path):
+    """As asked; of the file if it says one; else about 800 elements."""
+    count = {size: len(ms.mesh.from_cad(DATA / "two-plates.geo", size, "mm").elements) for size in (None, 1e-3)}
+    assert count == {None: 10, 1e-3: 10}  # its divisions are its own: transfinite
+    text = "SetFactory('OpenCASCADE'); Rectangle(1) = {0, 0, 0, 20, 10};"
+    sizes = {}
+    for name, extra, size in (
+        ("asked", "", 2e-3),
+        ("said", "MeshSize {1, 2, 3, 4} = 5;", None),
+        ("over", "MeshSize {1, 2, 3, 4} = 5;", 2e-3),
+        ("free", "", None),
+    ):
+        (tmp_path / f"{name}.geo").write_text(f"{text}{extra}\n")
+        mesh = ms.mesh.from_cad(tmp_path / f"{name}.geo", size, "mm")
+        sizes[name] = 1e3 * (20e-3 * 10e-3 / len(mesh.elements)) ** 0.5
+    print(sizes)
+    assert 1.2 < sizes["asked"] < 2.4
+    assert 2.0 < sizes["said"] < 6.0
+    assert sizes["over"] == sizes["asked"]
+    assert 0.3 < sizes["free"] < 0.7
+
+
+@needs_gmsh
+def test_faces_that_touch_are_joined(tmp_path):
+    """Two rectangles of a STEP file, each with its own edge where they meet."""
+    (file,) = made(
+        tmp_path, ["two.step"], lambda occ: (occ.addRectangle(0, 0, 0, 4, 2), occ.addRectangle(4, 0, 0, 2, 2))
+    )
+    mesh = ms.mesh.from_cad(file, size=1e-3)
+    assert len(mesh.parts) == 1
+    assert np.isclose(mesh.points[mesh.boundary_edges[:, :2]].max(), 6e-3)
+
+
+@needs_gmsh
+def test_what_cannot_be_meshed(tmp_path):
+    cases = {
+        "box.geo": ("SetFactory('OpenCASCADE'); Box(1) = {0, 0, 0, 1, 1, 1};", r"holds 1 solid\(s\).*mid-surface"),
+        "points.geo": ("Point(1) = {0, 0, 0};", "has no surface that could be meshed"),
+        "wrong.geo": (
+            "Point(1) = {0, 0, 0\nLine(1) = {1, 7};",
+            r"wrong.geo: gmsh cannot do it: line 2: syntax error",
+        ),
+        "apart.geo": (
+            "SetFactory('OpenCASCADE'); Rectangle(1) = {0, 0, 0, 4, 2}; Rectangle(2) = {4, 0, 0, 2, 2};",
+            "apart.geo: Elements .* Coherence",
+        ),
+        "empty.step": ("", r"empty.step: .*"),
+        "damaged.step": ("ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\n#1=CART", r"damaged.step: .*"),
+        "part.txt": ("", "part.txt: is not a geometry"),
+    }
+    for name, (text, message) in cases.items():
+        (tmp_path / name).write_text(text)
+        unit = "mm" if name.endswith(".geo") else None
+        with pytest.raises(InputError, match=message):
+            ms.mesh.from_cad(tmp_path / name, size=0.5e-3, unit=unit)
+    with pytest.raises(InputError, match=r"there is no such file. Did you mean 'box.geo'"):
+        ms.mesh.from_cad(tmp_path / "bax.geo", unit="mm")
+    with pytest.raises(InputError, match=r"unit: is missing: box.geo"):
+        ms.mesh.from_cad(tmp_path / "box.geo")
+    with pytest.raises(InputError, match=r"unit: is 'm', but empty.step says that its lengths are in mm"):
+        ms.mesh.from_cad(tmp_path / "empty.step", unit="m")
+    with pytest.raises(InputError, match=r"size = -1.0 is not allowed"):
+        ms.mesh.from_cad(tmp_path / "box.geo", size=-1.0, unit="mm")
+
+
+@needs_gmsh
+def test_gmsh_leaves_no_trace(tmp_path, capfd):
+    """No word on the terminal, Ctrl-C as before, and gmsh finalised, also after an error."""
+    import gmsh
+
+    before = signal.getsignal(signal.SIGINT)
+    (file,) = made(tmp_path, ["tube.step"], tube)
+    capfd.readouterr()
+    ms.mesh.from_cad(file, size=8e-3)
+    (tmp_path / "wrong.geo").write_text("Line(1) = {1, 7};")
+    with pytest.raises(InputError):
+        ms.mesh.from_cad(tmp_path / "wrong.geo", unit="mm")
+    assert tuple(capfd.readouterr()) == ("", "")
+    assert signal.getsignal(signal.SIGINT) is before
+    assert not gmsh.isInitialized()
+    gmsh.initialize(readConfigFiles=False, interruptible=False)
+    try:
+        with pytest.raises(InputError, match=r"gmsh is in use in this process"):
+            ms.mesh.from_cad(file)
+        assert gmsh.isInitialized()
+    finally:
+        gmsh.finalize()
+
+
+def test_without_gmsh(monkeypatch):
+    """The extra is named; and the packages, if the wheel is there but its libraries are not."""
+    real = builtins.__import__
+    for error, message in (
+        (ImportError("no gmsh"), r'flower.geo: needs gmsh.*pip install "magshell\[gmsh\]"'),
+        (OSError("libGLU.so.1: cannot open"), rf"does not load \(libGLU.so.1.*apt-get install {DEBIAN}"),
+    ):
+
+        def refuse(name, *rest, error=error):
+            if name == "gmsh":
+                raise error
+            return real(name, *rest)
+
+        monkeypatch.setattr(builtins, "__import__", refuse)
+        with pytest.raises(InputError, match=message):
+            ms.mesh.from_cad(DATA / "flower.geo", unit="mm")
+        monkeypatch.undo()
+
+
+def test_a_geometry_is_not_read_as_a_mesh():
+    with pytest.raises(InputError, match=r"flower.geo: is a geometry, not a mesh. Mesh it first: magshell mesh"):
+        ms.mesh.read(DATA / "flower.geo", unit="mm")

@@ -1,0 +1,63 @@
+"""Elements turned so that normals agree, and surfaces where they cannot."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import magshell as ms
+from magshell.errors import InputError
+from magshell.mesh import Mesh
+from magshell.mesh.files.orientation import TURNED_QUAD, TURNED_TRIANGLE, agreeing
+
+from .same import described, first_order
+
+
+def strip(turns, elements=12):
+    """Corners of a closed strip, twisted so many half turns."""
+    angle = np.repeat(2.0 * np.pi * np.arange(elements) / elements, 2)
+    across = np.tile([-0.3, 0.3], elements)
+    twist = 0.5 * turns * angle
+    radius = 1.0 + across * np.cos(twist)
+    points = np.stack([radius * np.cos(angle), radius * np.sin(angle), across * np.sin(twist)], axis=1)
+    low = 2 * np.arange(elements)
+    rows = np.stack([low, low + 1, np.roll(low, -1) + 1, np.roll(low, -1)], axis=1)
+    if turns % 2:
+        rows[-1, 2:] = rows[-1, [3, 2]]
+    return points, np.hstack([rows, np.full_like(rows, -1)])
+
+
+@settings(deadline=None, max_examples=20)
+@given(st.sets(st.integers(0, 11), max_size=5))
+def test_any_elements_turned_come_back(turned):
+    """Fewer than half of them, of a tube: the mesh is the one before."""
+    mesh = ms.mesh.cylinder(1, 1, (6, 2))
+    rows = mesh.elements.copy()
+    chosen = np.array(sorted(turned), dtype=int)
+    rows[chosen] = rows[chosen][:, TURNED_QUAD]
+    back, count = agreeing(rows)
+    assert count == len(turned)
+    assert described(Mesh(mesh.points, back))["elements"] == described(mesh)["elements"]
+
+
+def test_triangles_and_separate_parts_are_turned_too():
+    """Each part for itself; a turned triangle has its nodes where they belong."""
+    _, rows = first_order(ms.mesh.rectangle(3, 2, (3, 2)), triangles=True)
+    apart = np.where(rows >= 0, rows + rows.max() + 1, -1)
+    both = np.concatenate([rows, apart[:, TURNED_TRIANGLE]])
+    both[[1, 15]] = both[[1, 15]][:, TURNED_TRIANGLE]
+    back, count = agreeing(both)
+    assert count == 2
+    assert sorted(np.flatnonzero((back != both).any(axis=1))) == [1, 15]
+    full = np.array([[0, 1, 2, 2, 3, 4, 2, 5]])
+    assert full[:, TURNED_TRIANGLE].tolist() == [[0, 2, 1, 1, 5, 4, 1, 3]]
+
+
+def test_a_moebius_band_is_refused():
+    for turns in (0, 2):
+        assert agreeing(strip(turns)[1])[1] == 0
+    for turns in (1, 3):
+        with pytest.raises(InputError, match="one side only, like a Möbius band"):
+            agreeing(strip(turns)[1])
