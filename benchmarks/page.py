@@ -19,7 +19,7 @@ from magshell.output.page import write_page
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "tests" / "browser"))
 
 from chromium import browser, missing
-from rolled import rolled
+from rolled import plate, rolled
 
 ELEMENTS, STEPS = (100, 50), 30
 DRAWN = """
@@ -40,7 +40,7 @@ def main() -> None:
     """Print the figures."""
     if missing():
         raise SystemExit(f"this benchmark needs {missing()}")
-    path = rolled(ELEMENTS, STEPS)
+    path = rolled(plate(ELEMENTS), STEPS)
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "view.html"
         begin = time.perf_counter()

@@ -7,6 +7,7 @@ import numpy as np
 import magshell as ms
 from magshell.assembly import Discretisation
 from magshell.linalg.ordering import nested_dissection
+from magshell.mesh import Mesh
 from magshell.shell.state import State
 from magshell.solver.path import Path, Step
 
@@ -14,9 +15,23 @@ LENGTH, WIDTH = 0.1, 0.1
 FIELD = 50e-3
 
 
-def rolled(elements: tuple[int, int], steps: int, probe: str = "tip") -> Path:
+def plate(elements: tuple[int, int]) -> Mesh:
+    """Quadrilaterals."""
+    return ms.mesh.rectangle(LENGTH, WIDTH, elements)
+
+
+def mixed() -> Mesh:
+    """Five quadrilaterals, and the last one cut into two triangles."""
+    whole = plate((3, 2))
+    a, b, c, d, ab, bc, cd, da = whole.elements[-1].tolist()
+    ac = len(whole.points)
+    points = np.vstack([whole.points, whole.points[[a, c]].mean(axis=0)])
+    triangles = [[a, b, c, c, ab, bc, c, ac], [a, c, d, d, ac, cd, d, da]]
+    return Mesh(points, np.vstack([whole.elements[:-1], triangles]), edge_groups={"left": whole.edge_groups["left"]})
+
+
+def rolled(mesh: Mesh, steps: int, probe: str = "tip") -> Path:
     """A plate clamped at one end, with directors and rotations that go with the roll, in a field that rises."""
-    mesh = ms.mesh.rectangle(LENGTH, WIDTH, elements)
     rubber = ms.MicropolarNeoHookean(shear_modulus=303e3, lame_lambda=7.3e6, coupling_modulus=30.3e3, length_scale=1e-4)
     shell = ms.Shell(mesh, 1e-3, rubber, ms.remanence.constant([143e-3, 0, 0]))
     model = ms.Model(

@@ -11,13 +11,14 @@ import numpy as np
 import pytest
 from chromium import Browser, browser, missing
 from PIL import Image
-from rolled import FIELD, rolled
+from rolled import FIELD, mixed, plate, rolled
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
 from magshell.output.page import write_page
 from magshell.output.registry import OUTPUTS
+from magshell.output.tessellation import Tessellation
 from magshell.solver.critical import LIMIT_POINT, CriticalPoint
 from magshell.solver.path import Path
 
@@ -32,7 +33,7 @@ pytestmark = pytest.mark.skipif(bool(missing()), reason=f"no test in a browser: 
 @pytest.fixture(scope="module")
 def path() -> Path:
     """A plate rolled up in eight steps, with an unstable step, a critical point and a probe of an awkward name."""
-    path = rolled((10, 6), STEPS, PROBE)
+    path = rolled(plate((10, 6)), STEPS, PROBE)
     path.steps[UNSTABLE] = path.steps[UNSTABLE]._replace(negative_pivots=1)
     at = path.steps[CRITICAL]
     mode = np.zeros((len(at.state.u), 10))
@@ -239,3 +240,19 @@ def test_numbers_of_the_page_are_those_of_the_path(window, path):
         read = np.array(json.loads(window.do(script, name))).T
         step = np.ptp(values, axis=0) / 65534
         assert (np.abs(read - values) <= 0.5 * step + 1e-6 * np.abs(values).max()).all(), name
+
+
+def test_triangles_and_quadrilaterals_are_drawn_as_in_pictures(shared, tmp_path):
+    """The surface that the page computes is that of the tessellation of all other pictures."""
+    path = rolled(mixed(), 4)
+    mesh, state = path.discretisation.mesh, path.steps[3].state
+    assert mesh.triangles.sum() == 2
+    shared.size(1400, 900)
+    shared.open(write_page(path, tmp_path / "mixed.html"))
+    script = "go(3); return JSON.stringify([body.positions, body.normals, body.triangles].map(list => [...list]))"
+    points, normals, triangles = (np.array(list_) for list_ in json.loads(shared.do(script)))
+    surface = Tessellation(mesh.elements, 6).surface(mesh.points + state.u)
+    assert np.abs(points.reshape(-1, 3) - surface.points).max() < 1e-4 * mesh.size
+    assert np.abs(normals.reshape(-1, 3) - surface.normals).max() < 2e-3
+    np.testing.assert_array_equal(triangles.reshape(-1, 3), surface.triangles)
+    assert shared.console() == []

@@ -29,7 +29,7 @@ class Surface(NamedTuple):
     """(triangles, 3) point numbers"""
 
 
-class _Lattice(NamedTuple):
+class Lattice(NamedTuple):
     """Elements of one shape: their numbers, functions (m, nodes) and derivatives (m, 2, nodes), pieces of one."""
 
     elements: IntArray
@@ -47,6 +47,11 @@ class Tessellation:
     elements : IntArray, shape (elements, 8)
     pieces : int, optional
         6 without it, fewer where there are more than 10 000 elements.
+
+    Attributes
+    ----------
+    lattices : list of Lattice
+        Of the quadrilaterals and of the triangles, if there are any.
     """
 
     def __init__(self, elements: IntArray, pieces: int | None = None) -> None:
@@ -55,16 +60,16 @@ class Tessellation:
         lattices = []
         if not triangles.all():
             chosen = np.flatnonzero(~triangles)
-            lattices.append(_Lattice(chosen, elements[chosen], *_square(self._pieces)))
+            lattices.append(Lattice(chosen, elements[chosen], *_square(self._pieces)))
         if triangles.any():
             chosen = np.flatnonzero(triangles)
-            lattices.append(_Lattice(chosen, elements[chosen][:, triangle.SLOTS], *_triangle(self._pieces)))
-        self._lattices = lattices
+            lattices.append(Lattice(chosen, elements[chosen][:, triangle.SLOTS], *_triangle(self._pieces)))
+        self.lattices = lattices
 
     def surface(self, positions: FloatArray) -> Surface:
         """The surface through nodes at these positions, shape (nodes, 3)."""
         normals, triangles, first = [], [], 0
-        for lattice in self._lattices:
+        for lattice in self.lattices:
             tangents = np.einsum("man,enk->aemk", lattice.dN, positions[lattice.nodes])
             normals.append(np.cross(tangents[0], tangents[1]).reshape(-1, 3))
             starts = first + np.arange(len(lattice.elements)) * len(lattice.N)
@@ -77,13 +82,13 @@ class Tessellation:
 
     def at_points(self, values: FloatArray) -> FloatArray:
         """Nodal values, shape (nodes,) or (nodes, k), at the points of the surface."""
-        sampled = [np.einsum("mn,en...->em...", lattice.N, values[lattice.nodes]) for lattice in self._lattices]
+        sampled = [np.einsum("mn,en...->em...", lattice.N, values[lattice.nodes]) for lattice in self.lattices]
         return np.concatenate([part.reshape(-1, *values.shape[1:]) for part in sampled])
 
     def on_elements(self, values: AnyArray) -> AnyArray:
         """Element values, shape (elements,) or (elements, k), at the points of the surface."""
         return np.concatenate(
-            [np.repeat(values[lattice.elements], len(lattice.N), axis=0) for lattice in self._lattices]
+            [np.repeat(values[lattice.elements], len(lattice.N), axis=0) for lattice in self.lattices]
         )
 
     def edges(self, positions: FloatArray, triples: IntArray) -> FloatArray:
