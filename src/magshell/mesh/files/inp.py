@@ -31,6 +31,7 @@ _TYPES: tuple[tuple[str, Kind | None], ...] = (
     (r"(S?C3D\d+\w*|CSS8|SC[68]R\w*)", None),
 )
 """Kind by type of element; None: it has a volume."""
+_LARGEST_SET = 10_000_000
 
 
 @dataclass
@@ -186,7 +187,7 @@ def _members(lines: Lines, rows: list[int], given: dict[str, str]) -> list[int |
         values = [_whole(lines, line, part, "first, last and increment") for part in parts]
         if len(values) == 2:
             values.append(1)
-        if len(values) != 3 or values[2] <= 0 or (values[1] - values[0]) / values[2] > 1e8:
+        if len(values) != 3 or values[2] <= 0 or (values[1] - values[0]) / values[2] > _LARGEST_SET:
             lines.fail(line, f"expected first, last and increment, found '{shortened(lines.text(line))}'")
         members += range(values[0], values[1] + 1, values[2])
     return members

@@ -1,0 +1,171 @@
+"""A mesh file damaged at random is refused, with its name and mostly its line, or still a mesh; nothing else."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import magshell as ms
+from faults.damage import damaged
+from faults.limits import bounded, located, share
+from magshell.errors import InputError
+from magshell.mesh import Mesh, read
+
+DATA = Path(__file__).parent.parent / "mesh" / "files" / "data"
+PLATE = ms.mesh.rectangle(20e-3, 5e-3, (4, 1))
+
+
+def inp(mesh: Mesh) -> bytes:
+    """Abaqus' input file of a mesh, with sets of every kind."""
+    lines = ["*Heading", "** a comment", "*Node, nset=all"]
+    lines += [f"{number}, {', '.join(map(repr, point))}" for number, point in enumerate(mesh.points.tolist(), 1)]
+    lines += ["*Element, type=S8R, elset=plate"]
+    lines += [f"{number}, {', '.join(str(node + 1) for node in row)}" for number, row in enumerate(mesh.elements, 1)]
+    lines += ["*Nset, nset=ends, generate", "1, 5, 2", "*Elset, elset=half", "1, 2", "plate", '*Nset, nset="ä b"', "1,"]
+    return "\n".join([*lines, ""]).encode()
+
+
+def vtk(mesh: Mesh, suffix: str, text: bool) -> bytes:
+    """VTK's file of a mesh."""
+    import tempfile
+
+    import vtkmodules.all as vtk_all
+    from pyvista import UnstructuredGrid
+
+    count = len(mesh.elements)
+    cells = np.column_stack([np.full(count, 8), mesh.elements]).ravel()
+    grid = UnstructuredGrid(cells, np.full(count, 23, np.uint8), mesh.points)
+    writer = vtk_all.vtkXMLUnstructuredGridWriter() if suffix == ".vtu" else vtk_all.vtkUnstructuredGridWriter()
+    if suffix == ".vtu" and text:
+        writer.SetDataModeToAscii()
+    if suffix == ".vtk" and not text:
+        writer.SetFileTypeToBinary()
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder, f"part{suffix}")
+        writer.SetFileName(str(file))
+        writer.SetInputData(grid)
+        writer.Write()
+        return file.read_bytes()
+
+
+def written(mesh: Mesh, file: Path) -> bytes:
+    ms.mesh.write(mesh, file, "mm")
+    return file.read_bytes()
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("meshes")
+
+
+def refused_or_a_mesh(content: bytes, file: Path) -> None:
+    file.write_bytes(content)
+    with bounded(), warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            mesh = read(file, None if b"lengths in" in content else "mm", second_order=True)
+        except InputError as error:
+            if not str(error).startswith("unit: "):
+                located(error, file.name)
+            return
+    assert np.isfinite(mesh.points).all()
+    assert mesh.elements.max() < len(mesh.points)
+    for groups in (mesh.element_groups, mesh.edge_groups, mesh.node_groups):
+        assert all(name.isprintable() and len(members) for name, members in groups.items()), list(groups)
+
+
+@pytest.fixture(autouse=True)
+def without_gmsh(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Text that becomes another version is a fault here, not a file for gmsh."""
+    monkeypatch.setattr("magshell.mesh.files.session.installed", lambda: False)
+
+
+@share(0.07)
+@given(content=damaged((DATA / "two-plates-41.msh").read_bytes()))
+def test_msh_4(content: bytes, folder: Path) -> None:
+    refused_or_a_mesh(content, folder / "part.msh")
+
+
+@share(0.07)
+@given(content=damaged((DATA / "two-plates-22.msh").read_bytes()))
+def test_msh_2(content: bytes, folder: Path) -> None:
+    refused_or_a_mesh(content, folder / "part.msh")
+
+
+@share(0.07)
+@given(content=damaged(inp(PLATE)))
+def test_inp(content: bytes, folder: Path) -> None:
+    refused_or_a_mesh(content, folder / "part.inp")
+
+
+@pytest.mark.parametrize("text", [True, False], ids=["text", "binary"])
+@pytest.mark.parametrize("suffix", [".vtu", ".vtk"])
+def test_vtk(suffix: str, text: bool, folder: Path) -> None:
+    """Read in another process, which VTK may crash."""
+    whole = vtk(PLATE, suffix, text)
+    (folder / f"part{suffix}").write_bytes(whole)
+    assert len(read(folder / f"part{suffix}", "mm").elements) == 4
+
+    @share(0.002)
+    @given(content=damaged(whole))
+    def check(content: bytes) -> None:
+        refused_or_a_mesh(content, folder / f"part{suffix}")
+
+    check()
+
+
+@share(0.005)
+@given(content=damaged((DATA / "two-plates-binary.msh").read_bytes()))
+def test_msh_through_gmsh(content: bytes, folder: Path) -> None:
+    """Read in another process, which gmsh may crash."""
+    pytest.importorskip("gmsh")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("magshell.mesh.files.session.installed", lambda: True)
+        refused_or_a_mesh(content, folder / "binary.msh")
+
+
+@share(0.02)
+@given(content=st.binary(max_size=400), suffix=st.sampled_from([".msh", ".inp"]))
+def test_anything(content: bytes, suffix: str, folder: Path) -> None:
+    refused_or_a_mesh(content, folder / f"any{suffix}")
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "words"),
+    [
+        ("part.msh", b"\n", b"\r\n", ""),
+        ("part.msh", b'"both"', '"Blütenblatt №3 „links“"'.encode(), ""),
+        ("part.msh", b'"both"', b'"with \\"quotes\\" in it"', ""),
+        ("part.msh", b'"both"', b'"caf\xe9"', ""),
+        ("part.msh", b'"both"', b'"' + 5000 * b"n" + b'"', ""),
+        ("part.msh", b"\n27 ", b"\n99999999999999 ", ""),
+        ("part.inp", b"*Element", b"*ELEMENT", ""),
+        ("part.inp", b"\n", b"\r\n", ""),
+        ("part.inp", b"1, 5, 2", b"1, 999999999999, 1", "first, last and increment"),
+        ("part.inp", b"1, 5, 2", b"1, 999999, 1", ""),
+        ("part.inp", b"1, 5, 2", b"1, 99999999, 1", "first, last and increment"),
+        ("part.inp", b"1, 2\nplate", b"half", "holds it in turn"),
+        ("part.inp", b"0.02,", b"nan,", "part.inp, line "),
+        ("part.inp", b"0.02,", b"1e200,", "coordinates must be finite"),
+    ],
+)
+def test_what_may_stand_in_a_file(name: str, old: bytes, new: bytes, words: str, folder: Path) -> None:
+    content = inp(PLATE) if name.endswith("inp") else (DATA / "two-plates-22.msh").read_bytes()
+    assert old in content
+    refused_or_a_mesh(content.replace(old, new), folder / name)
+    if words:
+        with pytest.raises(InputError, match=words):
+            read(folder / name, "mm", second_order=True)
+
+
+@pytest.mark.parametrize("suffix", [".msh", ".inp", ".vtu", ".vtk", ".txt", ""])
+def test_empty(suffix: str, folder: Path) -> None:
+    (folder / f"empty{suffix}").touch()
+    with pytest.raises(InputError) as error:
+        read(folder / f"empty{suffix}", "mm")
+    located(error.value, f"empty{suffix}")
