@@ -58,94 +58,93 @@ def _element_group(discretisation: Discretisation, state: State) -> AnyArray:
     return numbers
 
 
-OUTPUTS = MappingProxyType(
-    {
-        output.name: output
-        for output in (
-            Output(
-                "displacement",
-                "u",
-                "m",
-                "Displacement of the mid-surface.",
-                "point",
-                3,
-                lambda discretisation, state: state.u,
-            ),
-            Output(
-                "director",
-                "d",
-                "",
-                "Deformed director: unit normal of the undeformed mid-surface plus its difference vector w.",
-                "point",
-                3,
-                lambda discretisation, state: discretisation.nodal_director(state),
-            ),
-            Output(
-                "phi",
-                "phi",
-                "1/m",
-                "Linear part of the thickness stretch.",
-                "point",
-                1,
-                lambda discretisation, state: discretisation.nodal_phi(state),
-            ),
-            Output(
-                "rotation",
-                "theta",
-                "rad",
-                "Micro-rotation vector: along the axis, as long as the angle.",
-                "point",
-                3,
-                lambda discretisation, state: discretisation.nodal_rotation(state),
-            ),
-            Output(
-                "normal",
-                "D",
-                "",
-                "Unit normal of the undeformed mid-surface.",
-                "point",
-                3,
-                lambda discretisation, state: discretisation.normals,
-            ),
-            Output(
-                "remanence",
-                "b",
-                "T",
-                "Remanent flux density carried by the deformed body, F·Brem/J, mean over the element.",
-                "cell",
-                3,
-                lambda discretisation, state: discretisation.element_remanence(state),
-            ),
-            Output(
-                "thickness_ratio",
-                "h",
-                "",
-                "Deformed over undeformed thickness, mean over the element.",
-                "cell",
-                1,
-                lambda discretisation, state: discretisation.element_thickness_ratio(state),
-            ),
-            Output(
-                "energy",
-                "W",
-                "J",
-                "Strain energy of the element.",
-                "cell",
-                1,
-                lambda discretisation, state: discretisation.element_energy(state),
-            ),
-            Output(
-                "element_group",
-                "group",
-                "",
-                "Number of the element group, from 1 in the order of element_group_names; 0 in none.",
-                "cell",
-                1,
-                _element_group,
-            ),
-        )
-    }
-)
+_OUTPUTS = {
+    output.name: output
+    for output in (
+        Output(
+            "displacement",
+            "u",
+            "m",
+            "Displacement of the mid-surface.",
+            "point",
+            3,
+            lambda discretisation, state: state.u,
+        ),
+        Output(
+            "director",
+            "d",
+            "",
+            "Deformed director: unit normal of the undeformed mid-surface plus its difference vector w.",
+            "point",
+            3,
+            lambda discretisation, state: discretisation.nodal_director(state),
+        ),
+        Output(
+            "phi",
+            "phi",
+            "1/m",
+            "Linear part of the thickness stretch.",
+            "point",
+            1,
+            lambda discretisation, state: discretisation.nodal_phi(state),
+        ),
+        Output(
+            "rotation",
+            "theta",
+            "rad",
+            "Micro-rotation vector: along the axis, as long as the angle.",
+            "point",
+            3,
+            lambda discretisation, state: discretisation.nodal_rotation(state),
+        ),
+        Output(
+            "normal",
+            "D",
+            "",
+            "Unit normal of the undeformed mid-surface.",
+            "point",
+            3,
+            lambda discretisation, state: discretisation.normals,
+        ),
+        Output(
+            "remanence",
+            "b",
+            "T",
+            "Remanent flux density carried by the deformed body, F·Brem/J, mean over the element.",
+            "cell",
+            3,
+            lambda discretisation, state: discretisation.element_remanence(state),
+        ),
+        Output(
+            "thickness_ratio",
+            "h",
+            "",
+            "Deformed over undeformed thickness, mean over the element.",
+            "cell",
+            1,
+            lambda discretisation, state: discretisation.element_thickness_ratio(state),
+        ),
+        Output(
+            "energy",
+            "W",
+            "J",
+            "Strain energy of the element.",
+            "cell",
+            1,
+            lambda discretisation, state: discretisation.element_energy(state),
+        ),
+        Output(
+            "element_group",
+            "group",
+            "",
+            "Number of the element group, from 1 in the order of element_group_names; 0 in none.",
+            "cell",
+            1,
+            _element_group,
+        ),
+    )
+}
+OUTPUTS = MappingProxyType(_OUTPUTS)
 
 
 def find(name: str) -> tuple[Output, int | None]:

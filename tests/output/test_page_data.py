@@ -1,0 +1,133 @@
+"""The page as text: numbers, names, no network; and outputs that are registered later."""
+
+from __future__ import annotations
+
+import base64
+import html
+import json
+import re
+
+import numpy as np
+import pytest
+from conftest import FakePath
+
+from magshell.errors import InputError
+from magshell.output import registry
+from magshell.output.animation import draw_steps
+from magshell.output.page import page, write_page
+from magshell.output.page.arrays import LARGEST, MISSING, quantised, span
+from magshell.output.registry import OUTPUTS, Output
+from magshell.output.vtu import grid
+
+
+def header(text: str) -> dict:
+    return json.loads(re.search(r'id="header">(.*?)</script>', text, re.S)[1])
+
+
+def array(text: str, name: str, kind: str) -> np.ndarray:
+    return np.frombuffer(base64.b64decode(re.search(rf'id="array-{name}">(.*?)<', text)[1]), kind)
+
+
+@pytest.fixture
+def written(path):
+    return page(path, "Tube")
+
+
+@pytest.mark.parametrize("scale", [1e-12, 1.0, 1e9])
+def test_numbers_lose_half_a_step_of_sixteen_bits(scale):
+    values = scale * np.random.default_rng(1).normal(size=1000)
+    codes, (low, high) = quantised(values)
+    error = np.abs(low + (high - low) / LARGEST * codes - values).max()
+    assert error <= 0.500001 * (high - low) / LARGEST, error
+
+
+def test_values_that_are_not_finite_are_missing():
+    values = np.array([1.0, np.nan, np.inf, 3.0, -np.inf])
+    codes, ends = quantised(values)
+    assert codes.tolist() == [0, MISSING, MISSING, LARGEST, MISSING]
+    assert ends == (1.0, 3.0)
+    assert span(np.array([np.nan])) == (0.0, 0.0)
+    assert quantised(np.full(3, 7.0))[0].tolist() == [0, 0, 0]
+
+
+def test_every_output_has_its_registered_texts(written):
+    about = {output["name"]: output for output in header(written)["outputs"]}
+    assert about.keys() == OUTPUTS.keys()
+    for name, output in OUTPUTS.items():
+        assert about[name]["sentence"] == output.sentence
+        assert about[name]["where"] == output.where
+        codes = array(written, name, "<u2")
+        assert len(codes) == about[name]["steps"] * about[name]["rows"] * output.components, name
+
+
+def test_what_never_changes_is_stored_once(written, path):
+    about = {output["name"]: output for output in header(written)["outputs"]}
+    assert about["normal"]["steps"] == about["element_group"]["steps"] == 1
+    assert about["displacement"]["steps"] == len(path.steps)
+
+
+def test_nothing_of_the_page_is_elsewhere(written):
+    for needle in ("http:", "https:", "//cdn", "@import", "url(", "src=", "import("):
+        found = [match.start() for match in re.finditer(re.escape(needle), written)]
+        allowed = {"http:": 'const SVG = "http://www.w3.org/2000/svg"'}.get(needle)
+        places = [written[at - 13 : at + 30] for at in found]
+        assert all(allowed and allowed[:30] in place for place in places), (needle, places)
+    assert "default-src 'none'" in written
+
+
+@pytest.mark.parametrize("name", ["</script><script>x", "<!--<script>", "a\"b'c&d", "${title}$$", "größer 磁石 \u2028"])
+def test_names_are_escaped(name):
+    text = page(FakePath(probes={name: (0.0, 0.0, 10e-3)}), name, about=[(name, name)])
+    plain = page(FakePath(probes={"tip": (0.0, 0.0, 10e-3)}), "Tube", about=[("a", "b")])
+    assert text.count("<script") == plain.count("<script")
+    assert text.count("</script") == plain.count("</script")
+    assert "<!--" not in text
+    assert {line["label"] for line in header(text)["curves"]["lines"]} <= {name}
+    assert f"<h1>{html.escape(name)}</h1>" in text
+
+
+def test_no_number_of_the_page_is_not_finite(path, monkeypatch):
+    broken = np.linspace(0, 1, len(path.discretisation.mesh.elements))
+    broken[::3] = np.nan
+    monkeypatch.setitem(
+        registry._OUTPUTS, "energy", Output("energy", "W", "J", "Broken.", "cell", 1, lambda d, state: broken)
+    )
+    text = page(path)
+    assert not re.search(r"\b(NaN|Infinity)\b", json.dumps(header(text)))
+    assert (array(text, "energy", "<u2")[: len(broken)] == MISSING).sum() == len(broken[::3])
+
+
+def test_interrupted_path_says_where_it_ends():
+    path = FakePath()
+    path.converged, path.reason = False, "interrupted"
+    assert "ends at step 4: interrupted" in page(path)
+
+
+def test_path_without_steps_is_bad_input():
+    path = FakePath()
+    path.steps = []
+    with pytest.raises(InputError, match="no converged step"):
+        page(path)
+
+
+def test_wrong_colour_is_bad_input(path, tmp_path):
+    with pytest.raises(InputError, match="Did you mean"):
+        write_page(path, tmp_path / "view.html", color="enrgy")
+    assert not list(tmp_path.iterdir())
+
+
+def test_new_output_appears_everywhere(path, tmp_path, monkeypatch, can_draw):
+    """One entry in the registry is all: files, menu of the page, colours of pictures."""
+    height = Output(
+        "height", "H", "m", "Height over the ground.", "point", 1, lambda d, state: d.mesh.points[:, 2] + state.u[:, 2]
+    )
+    monkeypatch.setitem(registry._OUTPUTS, height.name, height)
+    file = grid(path.discretisation, path.steps[-1])
+    np.testing.assert_array_equal(file.point_data["height"], height.evaluate(path.discretisation, path.steps[-1].state))
+    text = page(path, color="H")
+    assert header(text)["colour"] == "height 0"
+    about = header(text)["outputs"][-1]
+    assert (about["name"], about["symbol"], about["unit"], about["sentence"]) == ("height", "H", "mm", height.sentence)
+    (picture,) = draw_steps(path, path.steps[-1:], tmp_path, "H")
+    (other,) = draw_steps(path, path.steps[-1:], tmp_path / "u3", "u3")
+    assert picture.read_bytes() != other.read_bytes()
