@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from magshell.cli.console import console, say, say_doubts
+from magshell.cli.memory import memory_line
 from magshell.cli.status import SOLVED
 
 ABOUT = "say what a problem file means, without solving"
@@ -23,8 +24,11 @@ def run(given: argparse.Namespace) -> int:
     """Say what was understood."""
     from magshell.problem import load
     from magshell.problem.report import describe
+    from magshell.solver.memory import memory_free, memory_needed
 
-    report = describe(load(given.problem))
+    problem = load(given.problem)
+    report = describe(problem)
+    report.sections["Mesh"].append(("memory of a solve", memory_line(memory_needed(problem.model), memory_free())))
     out = console()
     width = max(len(label) for lines in report.sections.values() for label, _ in lines)
     for section, lines in report.sections.items():

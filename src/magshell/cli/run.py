@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from magshell.cli.console import complain, console, say, say_doubts
 from magshell.cli.folders import made
+from magshell.cli.memory import say_memory
 from magshell.cli.mesh import say_origin
 from magshell.cli.status import INTERRUPTED, NOT_SOLVED, SOLVED
 from magshell.errors import InputError, SolveError
@@ -83,6 +84,7 @@ def _new(problem: Problem, directory: pathlib.Path) -> int:
     say(out, problem.title)
     say_origin(out, problem.model.shell.mesh)
     say_doubts(out, describe(problem))
+    say_memory(out, problem.model)
     _forget_earlier_run(out, directory)
     results.make(problem, directory)
     return _follow(out, problem, directory, lambda observers: solve(problem.model, problem.settings, observers))

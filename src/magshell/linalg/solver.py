@@ -118,6 +118,7 @@ class SuperLU(_Equilibrated):
         """See `LinearSolver`."""
         from scipy.sparse.linalg import splu
 
+        self._factors: Any = None  # two sets of factors at a time would be twice the memory
         try:
             self._factors = splu(self._matrix, permc_spec="NATURAL", diag_pivot_thresh=0.001, options=_SYMMETRIC)
         except RuntimeError:
