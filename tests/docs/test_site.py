@@ -105,7 +105,7 @@ def public_names():
         yield from ((module, name) for name in importlib.import_module(module).__all__)
 
 
-@pytest.mark.parametrize(("module", "name"), public_names())
+@pytest.mark.parametrize(("module", "name"), list(public_names()))
 def test_the_reference_has_every_public_name(pages, module, name):
     page = f"api/generated/{module}.{name}.html"
     assert page in pages, "list it in docs/api/index.md"
