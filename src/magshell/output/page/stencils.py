@@ -28,7 +28,8 @@ def stencils(mesh: Mesh) -> tuple[dict[str, Any], dict[str, str]]:
         `elements-I`, `numbers-I`: nodes and numbers of the elements of kind I.
     """
     cells = Tessellation(mesh.elements, max(1, min(MOST_PIECES, int(FINENESS / len(mesh.elements) ** 0.5))))
-    kinds, arrays = [], {}
+    kinds: list[dict[str, Any]] = []
+    arrays: dict[str, str] = {}
     for i, lattice in enumerate(cells.lattices):
         first, second = np.moveaxis(lattice.dN, 1, 0)
         functions = {"N": lattice.N, "N1": first, "N2": second, "triangles": lattice.pieces}
