@@ -200,8 +200,7 @@ def _may_be_raised(rows: IntArray, name: str, second_order: bool) -> None:
 def _with_middles(groups: Groups, rows: IntArray, before: int, changes: list[str]) -> Groups:
     """Node groups with the new middles (numbers from `before`) between two of their nodes."""
     edges = find_edges(rows)
-    sides = edges.sides[edges.first_side]
-    sides = sides[sides[:, 2] >= before]
+    sides = edges.real[edges.real[:, 2] >= before]
     result = {}
     for group, nodes in groups.items():
         inside = np.isin(sides[:, :2], nodes).all(axis=1)
@@ -215,7 +214,7 @@ def _edge_groups(contents: Contents, rows: IntArray, node_count: int, changes: l
     """Edges of the elements that the lines of the file lie on, in the sense of the lines."""
     lines, members = _stacked(contents, 1, 3)
     edges = find_edges(rows)
-    known = edges.sides[edges.first_side]
+    known = edges.real
     keys = edge_keys(known, node_count)
     wanted = edge_keys(lines, node_count)
     place = np.searchsorted(keys, wanted).clip(max=len(keys) - 1)

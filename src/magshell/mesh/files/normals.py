@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from magshell.arrays import FloatArray, IntArray
-from magshell.mesh.edges import SIDES, find_edges
+from magshell.mesh.edges import SIDES, find_edges, is_triangle
 from magshell.mesh.geometry import diagonal_normals, unit
 
 BoolArray: TypeAlias = NDArray[np.bool_]
@@ -107,7 +107,7 @@ def _sheets(rows: IntArray, edge: IntArray, crease: BoolArray, real: BoolArray) 
     other_begin, other_end = SIDES[other % 4, 0], SIDES[other % 4, 1]
     swapped = rows[side // 4, begin] != rows[other // 4, other_begin]
     matching = np.where(swapped, other_end, other_begin), np.where(swapped, other_begin, other_end)
-    doubled = np.flatnonzero(rows[:, 2] == rows[:, 3])
+    doubled = np.flatnonzero(is_triangle(rows))
     ones = np.concatenate([4 * (side // 4) + begin, 4 * (side // 4) + end, 4 * doubled + 2])
     others = np.concatenate([4 * (other // 4) + matching[0], 4 * (other // 4) + matching[1], 4 * doubled + 3])
     graph = coo_matrix((np.ones(len(ones)), (ones, others)), shape=(4 * count, 4 * count))
@@ -117,10 +117,11 @@ def _sheets(rows: IntArray, edge: IntArray, crease: BoolArray, real: BoolArray) 
 
 
 def _fitted(points: FloatArray, rows: IntArray, sheet: IntArray, flat: FloatArray) -> FloatArray:
-    """Normal (sheets, 3) of z = a x + b y + c x² + d x y + e y² through the node, fitted to its neighbours.
+    """Normal (sheets, 3) of z = a x + b y + c x² + d x y + e y² + f at the node, fitted to its neighbours.
 
     The neighbours are the nodes of the elements about the node and of those about them, as far as they are on the
-    same side of every crease. What they do not determine stays zero.
+    same side of every crease. What they do not determine stays zero. With f, which is not used, a regular mesh of a tube
+    gets normals without an error, so that its straight lines stay straight; through the node they would tilt.
     """
     count = int(sheet.max()) + 1
     node = np.zeros(count, dtype=np.int64)
@@ -140,13 +141,12 @@ def _fitted(points: FloatArray, rows: IntArray, sheet: IntArray, flat: FloatArra
     scale = np.sqrt(np.bincount(about, squares, count) / members)
     scale[scale == 0.0] = 1.0
     x, y, z = x / scale[about], y / scale[about], z / scale[about]
-    terms = np.stack([x, y, x**2, x * y, y**2], axis=1)
-    weight = 1.0 / (squares / scale[about] ** 2 + 0.1)
-    moments, right = np.zeros((count, 5, 5)), np.zeros((count, 5))
-    for i in range(5):
-        right[:, i] = np.bincount(about, weight * terms[:, i] * z, count)
-        for j in range(i, 5):
-            moments[:, i, j] = moments[:, j, i] = np.bincount(about, weight * terms[:, i] * terms[:, j], count)
+    terms = np.stack([x, y, x**2, x * y, y**2, np.ones_like(x)], axis=1)
+    moments, right = np.zeros((count, 6, 6)), np.zeros((count, 6))
+    for i in range(6):
+        right[:, i] = np.bincount(about, terms[:, i] * z, count)
+        for j in range(i, 6):
+            moments[:, i, j] = moments[:, j, i] = np.bincount(about, terms[:, i] * terms[:, j], count)
     slope = np.einsum("nij,nj->ni", np.linalg.pinv(moments, rcond=SMALLEST_PIVOT, hermitian=True), right)[:, :2]
     return unit(mean - slope[:, :1] * tangent - slope[:, 1:] * bitangent)
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from magshell.arrays import IntArray
 from magshell.errors import InputError
-from magshell.mesh.edges import SIDES, edge_keys
+from magshell.mesh.edges import SIDES, edge_keys, is_triangle
 
 TURNED_QUAD = np.array([0, 3, 2, 1, 7, 6, 5, 4])
 TURNED_TRIANGLE = np.array([0, 2, 1, 1, 7, 5, 1, 4])
@@ -47,7 +47,7 @@ def agreeing(rows: IntArray) -> tuple[IntArray, int]:
         )
     sizes = np.bincount(as_is, minlength=label.max() + 1)
     flip = (sizes[turned] > sizes[as_is]) | ((sizes[turned] == sizes[as_is]) & (turned < as_is))
-    triangle = rows[:, 2] == rows[:, 3]
+    triangle = is_triangle(rows)
     result = rows.copy()
     for chosen, order in ((flip & ~triangle, TURNED_QUAD), (flip & triangle, TURNED_TRIANGLE)):
         result[chosen] = rows[chosen][:, order]

@@ -16,10 +16,9 @@ MOST_GROUPS = 40
 
 def in_words(mesh: Mesh, origin: Origin) -> list[tuple[str, str]]:
     """Label and text of every line of a report: size, elements, groups, quality, what was changed."""
-    triangles = int((mesh.elements[:, 2] == mesh.elements[:, 3]).sum())
     lines = [
         ("lengths in", origin.unit),
-        ("elements", kinds(len(mesh.elements) - triangles, triangles)),
+        ("elements", _counts(mesh)),
         ("nodes", str(len(mesh.points))),
         ("size", _extent(mesh, origin.unit)),
     ]
@@ -51,22 +50,14 @@ def in_words(mesh: Mesh, origin: Origin) -> list[tuple[str, str]]:
 
 def in_a_line(mesh: Mesh, origin: Origin) -> str:
     """The same, in one line."""
-    triangles = int((mesh.elements[:, 2] == mesh.elements[:, 3]).sum())
     corner = worst(mesh)["scaled_jacobian"]
-    return (
-        f"{origin.file}: {kinds(len(mesh.elements) - triangles, triangles)}, {_extent(mesh, origin.unit)}, "
-        f"worst corner {corner.value:.2g}" + "".join(f"; {change}" for change in origin.changes)
+    return f"{origin.file}: {_counts(mesh)}, {_extent(mesh, origin.unit)}, worst corner {corner.value:.2g}" + "".join(
+        f"; {change}" for change in origin.changes
     )
 
 
-def kinds(quads: int, triangles: int) -> str:
-    """So many quadrilaterals, so many triangles."""
-    parts = [
-        f"{count} {what}{'s' if count > 1 else ''}"
-        for count, what in ((quads, "quadrilateral"), (triangles, "triangle"))
-        if count
-    ]
-    return " and ".join(parts)
+def _counts(mesh: Mesh) -> str:
+    return mesh.counts if mesh.triangles.any() else f"{len(mesh.elements)} quadrilaterals"
 
 
 def _group(name: str, count: int, what: str) -> str:

@@ -52,7 +52,6 @@ def msh(mesh: Mesh, unit: str) -> bytes:
     vertices = _entities(len(nodes), places)
     # An entity of dimension 0 is one point.
     vertices = [(tags, rows[[row]]) for tags, rows in vertices for row in range(len(rows))]
-    triangle = mesh.elements[:, 2] == mesh.elements[:, 3]
     blocks: list[tuple[int, int, int, IntArray]] = []
     blocks += [(0, tag, _POINT, nodes[rows, None]) for tag, (_, rows) in enumerate(vertices, start=1)]
     blocks += [(1, tag, _LINE3, edges[rows]) for tag, (_, rows) in enumerate(curves, start=1)]
@@ -70,23 +69,20 @@ def msh(mesh: Mesh, unit: str) -> bytes:
     lines += [str(number) for number in range(1, len(points) + 1)]
     lines += [_numbers(point) for point in points]
     lines += ["$EndNodes"]
-    lines += _elements(mesh, blocks, surfaces, triangle)
+    lines += _elements(mesh, blocks, surfaces)
     return ("\n".join(lines) + "\n").encode()
 
 
 def _elements(
-    mesh: Mesh,
-    blocks: list[tuple[int, int, int, IntArray]],
-    surfaces: list[tuple[IntArray, IntArray]],
-    triangle: IntArray,
+    mesh: Mesh, blocks: list[tuple[int, int, int, IntArray]], surfaces: list[tuple[IntArray, IntArray]]
 ) -> list[str]:
     """The section `$Elements`: those of the surface first, by their numbers in the mesh."""
     count = len(mesh.elements)
     sections = []
     for tag, (_, rows) in enumerate(surfaces, start=1):
         for kind, chosen, columns in (
-            (_QUAD8, rows[~triangle[rows]], list(range(8))),
-            (_TRIANGLE6, rows[triangle[rows]], [0, 1, 2, 4, 5, 7]),
+            (_QUAD8, rows[~mesh.triangles[rows]], list(range(8))),
+            (_TRIANGLE6, rows[mesh.triangles[rows]], [0, 1, 2, 4, 5, 7]),
         ):
             if len(chosen):
                 sections.append((2, tag, kind, chosen + 1, mesh.elements[chosen][:, columns]))
