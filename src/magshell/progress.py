@@ -116,7 +116,7 @@ class ProgressDisplay(Observer):
 
     def finished(self, path: Path) -> None:
         """Say how it ended."""
-        self.path = path
+        self.path, self._stages = path, path.model.stages
         if path.steps:
             last = path.steps[-1]
             self._line(

@@ -121,7 +121,7 @@ def parse(value: object, dimension: Dimension, unit: str | None = None) -> float
         raise InputError(f"{quoted(value)} is not a finite number")
     if not dimension.units:
         if found:
-            raise InputError(f"{quoted(value)} has the unit '{found}' where a {dimension.name} is expected")
+            raise InputError(f"{quoted(value)} has the unit '{shortened(found)}' where a {dimension.name} is expected")
         return float(number)
     if not found:
         if float(number) == 0.0:

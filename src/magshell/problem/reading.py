@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from magshell.problem.schema import ProblemFile
 
 MOST_ERRORS = 10
+MOST_BYTES = 16 * 2**20
 
 
 class Source(NamedTuple):
@@ -103,13 +104,16 @@ def find(source: str | os.PathLike[str]) -> Source:
     try:
         if not path.is_file() and os.fspath(source) in examples.names():
             return Source(f"{source}.toml", examples.text(os.fspath(source)), pathlib.Path())
-        content = path.read_bytes()
+        with path.open("rb") as file:
+            content = file.read(MOST_BYTES + 1)
     except FileNotFoundError:
         raise InputError(_not_found(path)) from None
     except IsADirectoryError:
         raise InputError(f"{source}: is a folder; name a problem file (.toml) in it") from None
     except (OSError, ValueError) as error:
         raise InputError(f"{source}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    if len(content) > MOST_BYTES:
+        raise InputError(f"{path.name}: has more than {MOST_BYTES // 2**20} MiB; a problem is a short TOML file")
     try:
         return Source(path.name, content.decode("utf-8-sig"), path.parent)
     except UnicodeDecodeError as error:

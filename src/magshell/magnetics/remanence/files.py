@@ -7,6 +7,7 @@ import math
 import os
 import pathlib
 from collections.abc import Iterator, Sequence
+from tokenize import TokenError
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -193,7 +194,7 @@ def read_array(file: pathlib.Path) -> FloatArray:
         array = np.load(file, allow_pickle=False)
     except OSError as error:
         raise InputError(_unreadable(file, error)) from None
-    except (ValueError, EOFError) as error:
+    except (ValueError, EOFError, SyntaxError, TokenError, MemoryError) as error:
         raise InputError(f"{file.name}: is not an array of numbers in NumPy's format: {error}") from None
     if not isinstance(array, np.ndarray) or array.dtype.kind not in "fiu" or array.ndim != 2 or array.shape[1] != 3:
         found = f"{array.dtype} of shape {array.shape}" if isinstance(array, np.ndarray) else "an archive"
