@@ -155,6 +155,15 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             **GROUPS,
         },
     ),
+    "mesh-file": (
+        schema.MeshFile,
+        {
+            "file": "A mesh, from the folder of the problem file.",
+            "unit": "Of the lengths in the file. Files of `magshell mesh` say it themselves; of others it is required.",
+            "second_order": "Whether elements of first order get mid-side nodes, on the surface that they stand for.",
+            **GROUPS,
+        },
+    ),
     "selection": (schema.Selection, {f"x{i}": f"Coordinate $X_{i}$; left out, it is free." for i in (1, 2, 3)}),
     "shell": (
         schema.ShellTable,
@@ -418,6 +427,7 @@ OTHERWISE = {
     ("blocks", "elements"): "each block its own",
     ("block", "elements"): "those of `mesh`",
     ("gravity", "group"): "the whole shell",
+    ("mesh-file", "unit"): "that which the file says",
     **{
         (kind, "history"): "`[1, 1, …]`"
         for kind in ("force", "moment", "traction", "pressure", "gravity", "field", "prescribe")
