@@ -2,9 +2,9 @@
 A flower that remembers the bud
 ===============================
 
-Six petals about a hexagon, drawn in gmsh. They are bent up to a bud and magnetised there by a strong uniform field; released, they lie
-flat and remember. A weak field along the axis closes them again. This example is not in the paper: geometry from CAD, remanence from
-a template.
+Six petals about a hexagon, drawn in gmsh. They are bent up to a bud and magnetised there by a strong uniform field;
+released, they lie flat and remember. A weak field along the axis closes them again. This example is not in the paper:
+geometry from CAD, remanence from a template.
 """
 
 import matplotlib.pyplot as plt
@@ -16,7 +16,8 @@ from magshell.output.panels import colour_bar, colour_scale, draw_sequence
 from magshell.output.setup import draw_setup
 
 # %%
-# ``flower.geo`` names the petals, the hexagon and the post that holds it: these names are the groups of the mesh. It was meshed by
+# ``flower.geo`` names the petals, the hexagon and the post that holds it: their names are the groups of the mesh. It was
+# meshed by
 #
 # .. code-block:: console
 #
@@ -34,13 +35,15 @@ shell = model.shell
 print(shell.mesh)
 
 # %%
-# First the bud, as ``magshell show flower.toml --template`` draws it: what it carries is uniform, along the magnetising field.
+# First the bud, as ``magshell show flower.toml --template`` draws it: what it carries is uniform, along the magnetising
+# field.
 
 bud = draw_setup(model, title="In the magnetising field", template=True)
 
 # %%
-# Flat again, every point keeps the direction that it had in the material: :math:`\tilde B = M R^\mathsf{T} b` with the rotation :math:`R` from
-# the flat flower to the bud. At the foot of a petal it points up, half-way outwards, at the tip outwards and down.
+# Flat again, every point keeps the direction that the field had in the material: :math:`\tilde B = M R^\mathsf{T} b`
+# with the rotation :math:`R` from the flat flower to the bud. At the foot of a petal it points up, beyond the middle
+# outwards, at the tip outwards and down.
 
 flat = draw_setup(model, title="Released")
 
@@ -51,8 +54,9 @@ path = ms.solve(model, problem.settings)
 path
 
 # %%
-# The bud is the shape in which all of the remanence is along the field. Elastic forces keep the petals from it: the stronger the
-# field, the nearer they come. Here the angle by which the end of a petal has turned, and its distance from where it was in the bud:
+# The bud is the shape in which all of the remanence is along the field. Elastic forces keep the petals from it: the
+# stronger the field, the nearer they come. Here the angle by which the end of a petal has turned, and its distance from
+# where it was in the bud:
 
 tip = model.probe_nodes["tip"]
 element, corner = np.argwhere(shell.mesh.elements == tip)[0]
@@ -85,7 +89,8 @@ places = [(0.01 + 0.44 * column, 0.56 - 0.49 * row, 0.43, 0.41) for row in range
 figure = plt.figure(figsize=(9, 6.4), dpi=110)
 scale = colour_scale([body for group in groups for body in group], component=3)
 draw_sequence(figure, groups, [f"{field:g} mT" for field in fields], places, scale, view=(-60, 30))
-colour_bar(figure, (0.91, 0.3, 0.018, 0.4), scale, "$u_3$ (mm)")
+colour_bar(figure, (0.89, 0.3, 0.018, 0.4), scale, "$u_3$ (mm)")
 
 # %%
-# The petals are free to touch each other in the bud; here they do not. Folding, rolling and other templates: :doc:`/remanence`.
+# In a tighter bud the petals would touch each other, which is not computed; here they do not. Folding, rolling and other
+# templates: :doc:`/remanence`.

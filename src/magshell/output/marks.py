@@ -220,16 +220,23 @@ def support_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:
     """Cubes along clamped groups, balls along others."""
     marks = []
     mesh = model.shell.mesh
-    width = 0.016 * size
     for number, support in enumerate(model.supports):
         nodes = mesh.nodes_of(support.group)
         nodes = nodes[spread_out(mesh.points[nodes], MOST_POSTS)]
+        width = min(0.016 * size, 0.7 * _closest(mesh.points[nodes]))
         solids = Solids.CUBES if isinstance(support, Clamp) else Solids.BALLS
         wider = width if solids is Solids.CUBES else 0.85 * width
         name = f"{support.group}: {_kind(support)}"
         colour = SUPPORTS[number % len(SUPPORTS)]
         marks.append(Mark(name, colour, solids, mesh.points[nodes] + 0.3 * width * axes[2], width=wider))
     return marks
+
+
+def _closest(points: FloatArray) -> float:
+    """Distance of a point (n, 3) to the next, in the mean over all; infinite for one alone."""
+    from scipy.spatial import cKDTree
+
+    return float(np.asarray(cKDTree(points).query(points, k=2)[0])[:, 1].mean()) if len(points) > 1 else np.inf
 
 
 def _kind(support: Support) -> str:

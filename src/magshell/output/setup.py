@@ -6,6 +6,7 @@ What is drawn in space is made in `marks.py`; here it is rendered, lettered and 
 from __future__ import annotations
 
 import os
+from textwrap import fill
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -40,10 +41,12 @@ SCENE = (0.0, 0.015, 0.71, 0.875)
 """Left, bottom, width and height of the scene as fractions of the picture."""
 PLAIN = "#dde3ea"
 TINTS = ("#cfdff3", "#f7dfc3", "#d3ecd0", "#e8daf2", "#f9d9dc", "#cdecec", "#f2ecc4", "#e0e0e0")
-AMBIENT = 0.55
+LIGHT = {"ambient": 0.72, "diffuse": 0.52, "specular": 0.0}
+"""Pale tints stay what they are in the legend."""
 ELEVATION = 36.0
 AZIMUTHS = (-60.0, -45.0, -75.0, -30.0, -120.0, -135.0)
 MOST_NAMES = 8
+LETTERS_IN_A_LINE = 24
 
 
 def draw_setup(
@@ -192,7 +195,7 @@ def _place_body(plotter: Any, mesh: Mesh, shown: FloatArray, camera: Camera, siz
     body = pyvista.PolyData.from_regular_faces(surface.points, surface.triangles)
     body.point_data["colours"] = cells.on_elements(tints(mesh))
     body.point_data.active_normals = surface.normals
-    plotter.add_mesh(body, scalars="colours", rgb=True, **(SURFACE | {"ambient": AMBIENT}))
+    plotter.add_mesh(body, scalars="colours", rgb=True, **(SURFACE | LIGHT))
     nearer = 1.5e-3 * size * camera.axes[2]
     thin, thick = ({"lighting": False, "line_width": OVERSAMPLING * width} for width in (0.8, 1.8))
     sides = own[:, SIDES[:, [0, 2, 1]]].reshape(-1, 3)
@@ -228,7 +231,7 @@ def _letter(axes: Any, mark: Mark, camera: Camera) -> None:
 def _scale_bar(figure: Any, camera: Camera) -> None:
     """A bar of a round length, with it."""
     width = 2.0 * camera.half_width
-    longest = 0.13 * width / SCENE[2]
+    longest = 0.11 * width / SCENE[2]
     length = 10.0 ** np.floor(np.log10(longest))
     length *= max(step for step in (1, 2, 5) if step * length <= longest)
     share = SCENE[2] * length / width
@@ -265,7 +268,7 @@ def _legend(figure: Any, mesh: Mesh, marks: list[Mark], template: bool) -> None:
         names.append("undeformed")
     figure.legend(
         handles,
-        names,
+        [fill(name, LETTERS_IN_A_LINE) for name in names],
         loc="center left",
         bbox_to_anchor=(SCENE[2] + 0.005, 0.5),
         frameon=False,
