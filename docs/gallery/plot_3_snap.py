@@ -39,7 +39,7 @@ stable = np.array([step.negative_pivots == 0 for step in path.steps])
 crown = path.probe("crown")
 down, deflection = -1e3 * crown.flux_density[:, 2], 1e3 * crown.u3
 
-figure, (chart, shapes) = plt.subplots(1, 2, figsize=(11, 4.4), layout="constrained")
+figure, chart = plt.subplots(figsize=(6.6, 4.4), layout="constrained")
 chart.plot(down, deflection, "-", color="#94a3b8", linewidth=1, zorder=1)
 chart.plot(down[stable], deflection[stable], "o", color="#1d4ed8", label="stable")
 chart.plot(down[~stable], deflection[~stable], "o", color="#c2410c", markerfacecolor="white", label="unstable")
@@ -47,16 +47,22 @@ chart.set(xlabel="field, downward (mT)", ylabel="height of the crown over its st
 chart.grid(alpha=0.4)
 chart.legend()
 
+# %%
+# The arch from the side, every third step:
+
+figure, shapes = plt.subplots(figsize=(6.6, 4.4), layout="constrained")
 side = np.flatnonzero(np.isclose(shell.mesh.points[:, 1], shell.mesh.points[:, 1].min()))
 side = side[np.argsort(shell.mesh.points[side, 0])]
 for number, step in list(enumerate(path.steps))[::3]:
     x = 1e3 * (shell.mesh.points[side] + step.state.u[side])
     style = {"color": "#1d4ed8"} if stable[number] else {"color": "#c2410c", "linestyle": "--"}
     shapes.plot(x[:, 0], x[:, 2], linewidth=1.2, **style)
-shapes.set(xlabel="$X_1$ (mm)", ylabel="$X_3$ (mm)", title="side view, heights stretched")
+shapes.set(xlabel="$X_1$ (mm)", ylabel="$X_3$ (mm)", title="heights stretched")
 shapes.grid(alpha=0.4)
 
 # %%
 # Between the two limit points a given field has three states. A real arch under a growing field jumps from the first
 # limit point to the lower branch; where it comes to rest is a matter of dynamics, which this program does not
 # compute. More on :doc:`/path-following`.
+
+# sphinx_gallery_thumbnail_number = 2

@@ -65,8 +65,8 @@ for thickness in (0.4e-3, 0.6e-3, 0.8e-3, 1.2e-3, 1.6e-3):
     paths[thickness] = ms.solve(model, ms.Settings(largest_step=0.1))
 
 # %%
-# Left: deflection against the field. Right: the same against the one number on which a thin strip depends, :math:`q =
-# 12\,(B^\mathrm{rem}B/\mu_0E)(L/h)^2`. All thicknesses fall on the curve of the inextensible elastica,
+# Above: deflection against the field. Below: the same against the one number on which a thin strip depends, :math:`q
+# = 12\,(B^\mathrm{rem}B/\mu_0E)(L/h)^2`. All thicknesses fall on the curve of the inextensible elastica,
 # :math:`\vartheta'' = -q\cos\vartheta` with :math:`\vartheta(0) = \vartheta'(1) = 0`. Its first integral is
 # :math:`\vartheta' = \sqrt{2q\,(\sin\vartheta_1 - \sin\vartheta)}`, so that :math:`q` and the deflection are
 # integrals over the angle up to that of the tip, :math:`\vartheta_1`. With :math:`\vartheta = \vartheta_1 - t^2` they
@@ -88,7 +88,8 @@ def elastica(tip_angle):
 angles = np.append(np.geomspace(0.003, 1, 100), np.pi / 2 - np.geomspace(0.57, 1e-4, 100))
 exact = np.array([elastica(angle) for angle in angles])
 
-figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.4), layout="constrained", sharey=True)
+figure, above = plt.subplots(figsize=(6.6, 4.2), layout="constrained")
+figure, below = plt.subplots(figsize=(6.6, 4.2), layout="constrained")
 colours = plt.colormaps["viridis"](np.linspace(0.05, 0.85, len(paths)))
 worst = 0.0
 for colour, (thickness, path) in zip(colours, paths.items(), strict=True):
@@ -96,13 +97,14 @@ for colour, (thickness, path) in zip(colours, paths.items(), strict=True):
     field, deflection = tip.flux_density[:, 2], tip.u3 / length
     q = 12 * 143e-3 * field / (4e-7 * np.pi * youngs_modulus) * (length / thickness) ** 2
     style = {"color": colour, "marker": "o", "markersize": 4, "label": f"{1e3 * thickness:g} mm"}
-    left.plot(1e3 * field, deflection, **style)
-    right.plot(q, deflection, linestyle="none", **style)
+    above.plot(1e3 * field, deflection, **style)
+    below.plot(q, deflection, linestyle="none", **style)
     worst = max(worst, np.abs(deflection[1:] / np.interp(q[1:], *exact.T) - 1).max())
-right.plot(*exact.T, color="#1a1f26", linewidth=1, zorder=0, label="elastica")
-left.set(xlabel="field (mT)", ylabel="deflection of the tip over the length")
-right.set(xlabel="q", xscale="log", xlim=(0.01, 100))
-for axes in (left, right):
+below.plot(*exact.T, color="#1a1f26", linewidth=1, zorder=0, label="elastica")
+above.set(xlabel="field (mT)")
+below.set(xlabel="q", xscale="log", xlim=(0.01, 100))
+for axes in (above, below):
+    axes.set_ylabel("deflection of the tip over the length")
     axes.grid(alpha=0.4)
     axes.legend(title="thickness")
 
