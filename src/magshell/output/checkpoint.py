@@ -15,6 +15,7 @@ import zipfile
 import zlib
 from collections.abc import Mapping
 from dataclasses import asdict
+from tokenize import TokenError
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -29,6 +30,7 @@ from magshell.solver.events import Observer
 from magshell.solver.path import Path, Step
 from magshell.solver.track import Slope
 from magshell.solver.waypoint import Waypoint
+from magshell.units import shortened
 
 if TYPE_CHECKING:
     from magshell.assembly import Discretisation
@@ -38,7 +40,9 @@ FORMAT, VERSION = "magshell checkpoint", 1
 FOLDER = "checkpoint"
 UNKNOWN = -1
 # What reading a torn zip file may raise.
-DAMAGES = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError)
+DAMAGES = (
+    zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, SyntaxError, TokenError, MemoryError,
+)  # fmt: skip
 
 
 class Origin(NamedTuple):
@@ -128,7 +132,9 @@ def read_step(file: pathlib.Path) -> tuple[Waypoint, Origin]:
     except OSError as error:
         raise InputError(f"{file}: cannot be read: {error.strerror or error}") from None
     except (*DAMAGES, KeyError, TypeError, ValueError) as error:
-        raise InputError(f"{file}: is damaged ({type(error).__name__}: {error}). {remedy(number)}") from None
+        raise InputError(
+            f"{file}: is damaged ({type(error).__name__}: {shortened(str(error))}). {remedy(number)}"
+        ) from None
     if waypoint.step.number != number:
         raise InputError(f"{file}: holds step {waypoint.step.number}; it was renamed. {remedy(number)}")
     return waypoint, origin
