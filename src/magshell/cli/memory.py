@@ -31,10 +31,7 @@ def say_memory(on: Console, model: Model) -> None:
     needed, free = memory_needed(model), memory_free()
     line = f"memory: {memory_line(needed, free)}"
     if free is not None and needed > free:
-        line = (
-            f"warning: {line}: the solve may be killed. Take fewer elements, or go on with --resume where there is more"
-        )
-        say(on, line, style="yellow")
+        say(on, f"warning: {line}: the solve may be killed; take fewer elements or a larger machine", style="yellow")
     elif needed > MUCH or (free is not None and needed > SHARE * free):
         say(on, line)
 

@@ -1,0 +1,187 @@
+"""Files of the checkpoint: exact, whole or refused with what to do."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from magshell.errors import InputError
+from magshell.output import checkpoint
+from magshell.output.checkpoint import CheckpointWriter, Origin, content, read_step, step_files
+from magshell.shell.state import State
+from magshell.solver import CriticalPoint, Settings, Step
+from magshell.solver.balance import Balance
+from magshell.solver.track import Slope
+from magshell.solver.waypoint import Waypoint
+
+NODES, ELEMENTS = 13, 2
+ORIGIN = Origin("0.1.0", "digest", {"tolerance": 1e-9, "linear_solver": "superlu"})
+
+
+def waypoint(number: int = 7, plain: bool = False) -> Waypoint:
+    """A step of random numbers; a plain one has no balance, no pivots and no critical point."""
+    random = np.random.default_rng(number).normal
+
+    def state() -> State:
+        return State(
+            random(size=(NODES, 3)), random(size=(NODES, 3)), random(size=NODES), random(size=(NODES, 4)),
+            random(size=(ELEMENTS, 4, 3)),
+        )  # fmt: skip
+
+    balance = Balance(*(random(size=3) for _ in range(5)), 1e-12, 3e-13)
+    point = CriticalPoint(
+        2, "limit point", 1, random(), random(size=3), random(), state(), random(size=(NODES, 10)), (0, None)
+    )
+    step = Step(
+        number, random(), state(), 4, 1e-11, None if plain else balance, random(), 1, random(size=3), random(size=2),
+        None if plain else 3,
+    )  # fmt: skip
+    slope = Slope(random(size=(NODES, 10)), random(size=(ELEMENTS, 4, 3)), random())
+    return Waypoint(step, () if plain else (point, point), slope, 3, 2, True, random(), 5, 41, 1.25)
+
+
+def same(one: Waypoint, other: Waypoint) -> bool:
+    return content(one, ORIGIN) == content(other, ORIGIN)
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    written = tmp_path / "step-0007.npz"
+    written.write_bytes(content(waypoint(), ORIGIN))
+    return written
+
+
+@pytest.mark.parametrize("plain", [False, True])
+def test_every_bit_comes_back(file: Path, plain: bool) -> None:
+    written = waypoint(plain=plain)
+    file.write_bytes(content(written, ORIGIN))
+    read, origin = read_step(file)
+    assert origin == ORIGIN
+    assert same(read, written)
+    assert (read.step.balance is None) == (read.step.negative_pivots is None) == plain
+    if not plain:
+        assert read.critical_points[1].negative_pivots == (0, None)
+        assert read.critical_points[0].kind == "limit point"
+
+
+def test_a_file_is_readable_without_this_package(file: Path) -> None:
+    with np.load(file, allow_pickle=False) as arrays:
+        assert str(arrays["format"]) == "magshell checkpoint"
+        assert int(arrays["version"]) == 1
+        np.testing.assert_array_equal(arrays["u"], waypoint().step.state.u)
+
+
+def test_torn_files(file: Path) -> None:
+    """However much of it is missing."""
+    whole = file.read_bytes()
+    for length in np.linspace(0, len(whole) - 1, 60).astype(int):
+        file.write_bytes(whole[:length])
+        with pytest.raises(InputError, match=r"step-0007\.npz: is damaged .* then goes on from step 6"):
+            read_step(file)
+
+
+def test_flipped_bits(file: Path) -> None:
+    """Refused, unless the bit says nothing: dates, and what the archive has twice, are a quarter of so small a file."""
+    whole, refused = bytearray(file.read_bytes()), 0
+    places = np.random.default_rng(1).integers(0, len(whole), 120).tolist()
+    for place in places:
+        whole[place] ^= 0x10
+        file.write_bytes(whole)
+        whole[place] ^= 0x10
+        try:
+            read, origin = read_step(file)
+        except InputError:
+            refused += 1
+        else:
+            assert same(read, waypoint()), f"byte {place}"
+            assert origin == ORIGIN, f"byte {place}"
+    assert refused > 0.6 * len(places), f"{refused} of {len(places)} were noticed"
+
+
+def other(**changes: object) -> bytes:
+    """A file with some arrays changed; None: left out."""
+    with np.load(io.BytesIO(content(waypoint(), ORIGIN))) as arrays:
+        all_of_them = {**arrays, **changes}
+    made = io.BytesIO()
+    np.savez(made, **{name: values for name, values in all_of_them.items() if values is not None})
+    return made.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"", r"is damaged .*goes on from step 6"),
+        (b"PK not a zip file", r"is damaged"),
+        (other(format="somebody's arrays"), r"is not a checkpoint of magshell. Delete it"),
+        (other(version=2), r"has version 2 of the format, this magshell reads up to 1; update it"),
+        (other(u=None), r"is damaged \(KeyError: 'u'\)"),
+        (other(settings="{"), r"is damaged"),
+        (other(number=8), r"holds step 8; it was renamed"),
+    ],
+)
+def test_other_files(file: Path, content: bytes, message: str) -> None:
+    file.write_bytes(content)
+    with pytest.raises(InputError, match=rf"step-0007\.npz: {message}"):
+        read_step(file)
+
+
+def test_a_pickle_is_never_opened(file: Path) -> None:
+    made = io.BytesIO()
+    np.savez(made, format=np.array([print], dtype=object))
+    file.write_bytes(made.getvalue())
+    with pytest.raises(InputError, match="is damaged"):
+        read_step(file)
+
+
+def test_the_first_step_has_none_before_it(tmp_path: Path) -> None:
+    (tmp_path / "step-0000.npz").touch()
+    with pytest.raises(InputError, match="run the problem anew with --out"):
+        read_step(tmp_path / "step-0000.npz")
+
+
+def path_at(step: Waypoint) -> SimpleNamespace:
+    return SimpleNamespace(trail=[step], settings=Settings())
+
+
+def test_writer(tmp_path: Path) -> None:
+    writer = CheckpointWriter(tmp_path, "digest")
+    for number in (0, 1, 2, 10000):
+        writer.kept(path_at(waypoint(number)))
+    names = [file.name for file in step_files(tmp_path)]
+    assert names == ["step-0000.npz", "step-0001.npz", "step-0002.npz", "step-10000.npz"]
+    read, origin = read_step(step_files(tmp_path)[1])
+    assert same(read, waypoint(1))
+    assert origin.settings["max_iterations"] == Settings().max_iterations
+    (tmp_path / "checkpoint" / "notes.txt").touch()
+    writer.started(None, None)
+    assert [file.name for file in (tmp_path / "checkpoint").iterdir()] == ["notes.txt"]
+
+
+def test_forgotten_from_the_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """So that a path is left when that is broken off."""
+    writer = CheckpointWriter(tmp_path, "digest")
+    for number in range(4):
+        writer.kept(path_at(waypoint(number)))
+    gone = []
+    monkeypatch.setattr(Path, "unlink", lambda file: gone.append(file.name))
+    checkpoint.forget(tmp_path)
+    assert gone == [f"step-000{number}.npz" for number in (3, 2, 1, 0)]
+
+
+def test_full_disk_leaves_the_steps_before(tmp_path: Path) -> None:
+    resource = pytest.importorskip("resource")
+    writer = CheckpointWriter(tmp_path, "digest")
+    writer.kept(path_at(waypoint(0)))
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4000, before[1]))
+    try:
+        with pytest.raises(OSError, match=r"step-0001\.npz"):
+            writer.kept(path_at(waypoint(1)))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert [file.name for file in (tmp_path / "checkpoint").iterdir()] == ["step-0000.npz"]
+    assert same(read_step(step_files(tmp_path)[0])[0], waypoint(0))
