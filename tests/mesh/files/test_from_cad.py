@@ -18,6 +18,7 @@ from magshell.mesh.quality import worst
 from .same import described
 
 DATA = pathlib.Path(__file__).parent / "data"
+FLOWER = pathlib.Path(__file__).parents[3] / "docs" / "meshes" / "flower.geo"
 needs_gmsh = pytest.mark.skipif(importlib.util.find_spec("gmsh") is None, reason="needs the extra magshell[gmsh]")
 
 
@@ -43,7 +44,7 @@ def tube(occ):
 
 @pytest.fixture(scope="module")
 def flower():
-    return ms.mesh.from_cad(DATA / "flower.geo", size=1.2e-3, unit="mm")
+    return ms.mesh.from_cad(FLOWER, size=1.2e-3, unit="mm")
 
 
 @needs_gmsh
@@ -192,10 +193,10 @@ def test_without_gmsh(monkeypatch):
 
         monkeypatch.setattr(builtins, "__import__", refuse)
         with pytest.raises(InputError, match=message):
-            ms.mesh.from_cad(DATA / "flower.geo", unit="mm")
+            ms.mesh.from_cad(FLOWER, unit="mm")
         monkeypatch.undo()
 
 
 def test_a_geometry_is_not_read_as_a_mesh():
     with pytest.raises(InputError, match=r"flower.geo: is a geometry, not a mesh. Mesh it first: magshell mesh"):
-        ms.mesh.read(DATA / "flower.geo", unit="mm")
+        ms.mesh.read(FLOWER, unit="mm")

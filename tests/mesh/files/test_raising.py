@@ -53,7 +53,7 @@ def worst(surface, n, triangles):
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("surface", SURFACES)
 def test_fourth_order_on_cylinder_and_sphere(surface, kind):
-    """The distance falls 16-fold when the elements are halved, at free edges too (or is none); a chord's falls 4-fold."""
+    """The distance falls 16-fold when elements are halved, at free edges too (or is none); a chord's falls 4-fold."""
     coarse, fine = (worst(surface, n, KINDS[kind]) for n in (8, 16))
     order = np.log2(coarse[0] / fine[0])
     chords = np.log2(coarse[1] / fine[1])

@@ -60,7 +60,9 @@ STRUCTURED = 2
 """The attempt that begins where the file says itself how its surfaces are to be divided."""
 
 
-class _Candidate(NamedTuple):
+class Candidate(NamedTuple):
+    """A mesh and how good it is."""
+
     mesh: FileMesh
     triangles: int
     worst: float
@@ -111,8 +113,8 @@ def from_cad(file: str | os.PathLike[str], size: float | None = None, unit: str 
     own = agreed(unit, CONVERTED if suffix in KNOWS_ITS_UNIT else None, name)
     try:
         with session(name) as gmsh:
-            _open(gmsh, path, name)
-            _set_size(gmsh, None if size is None else size / length_unit(own), suffix)
+            open_geometry(gmsh, path, name)
+            set_size(gmsh, None if size is None else size / length_unit(own), suffix)
             structured = suffix in SCRIPTS and "Transfinite" in path.read_text("utf-8", "replace")
             return _best(gmsh, name, own, ATTEMPTS[STRUCTURED if structured else 0 :])
     except InputError:
@@ -121,7 +123,7 @@ def from_cad(file: str | os.PathLike[str], size: float | None = None, unit: str 
         raise
 
 
-def _open(gmsh: Any, path: pathlib.Path, name: str) -> None:
+def open_geometry(gmsh: Any, path: pathlib.Path, name: str) -> None:
     """Load the geometry; refuse volumes; name surfaces and curves if nothing has a name."""
     with quiet(), tempfile.TemporaryDirectory() as folder:
         gmsh.open(str(_ended(path, pathlib.Path(folder))))
@@ -176,7 +178,7 @@ def _name_entity(gmsh: Any, dimension: int, entity: int) -> None:
         gmsh.model.setPhysicalName(dimension, tag, name)
 
 
-def _set_size(gmsh: Any, size: float | None, suffix: str) -> None:
+def set_size(gmsh: Any, size: float | None, suffix: str) -> None:
     """The size of elements in the file's unit: as asked, else as the file says, else from the area."""
     option = gmsh.option.setNumber
     if size is None and suffix in SCRIPTS:
@@ -208,13 +210,13 @@ def _size_from_area(gmsh: Any) -> float:
 
 def _best(gmsh: Any, name: str, unit: str, attempts: tuple[Attempt, ...]) -> FileMesh:
     """The first good mesh, else the best one; of triangles only if there is no other."""
-    best: _Candidate | None = None
+    best: Candidate | None = None
     reason = f"{name}: gmsh makes no elements of it"
     for attempt in attempts:
         if best is not None and (best.good or (best.worst >= USABLE and not attempt.recombine)):
             break
         try:
-            candidate = _meshed(gmsh, name, unit, attempt)
+            candidate = meshed(gmsh, name, unit, attempt)
         except InputError as error:
             reason = str(error)
         except Exception as error:  # gmsh raises Exception itself
@@ -226,7 +228,7 @@ def _best(gmsh: Any, name: str, unit: str, attempts: tuple[Attempt, ...]) -> Fil
     return best.mesh
 
 
-def _meshed(gmsh: Any, name: str, unit: str, attempt: Attempt) -> _Candidate:
+def meshed(gmsh: Any, name: str, unit: str, attempt: Attempt) -> Candidate:
     """A mesh of second order made in one way."""
     option = gmsh.option.setNumber
     gmsh.model.mesh.clear()
@@ -242,7 +244,7 @@ def _meshed(gmsh: Any, name: str, unit: str, attempt: Attempt) -> _Candidate:
     _put_on_surfaces(gmsh)
     mesh = assemble(contents_of(gmsh, name), name, unit, second_order=False)
     triangles = int(mesh.triangles.sum())
-    return _Candidate(mesh, triangles, worst(mesh)["scaled_jacobian"].value)
+    return Candidate(mesh, triangles, worst(mesh)["scaled_jacobian"].value)
 
 
 def _put_on_surfaces(gmsh: Any) -> None:

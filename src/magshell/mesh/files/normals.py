@@ -120,8 +120,8 @@ def _fitted(points: FloatArray, rows: IntArray, sheet: IntArray, flat: FloatArra
     """Normal (sheets, 3) of z = a x + b y + c x² + d x y + e y² + f at the node, fitted to its neighbours.
 
     The neighbours are the nodes of the elements about the node and of those about them, as far as they are on the
-    same side of every crease. What they do not determine stays zero. With f, which is not used, a regular mesh of a tube
-    gets normals without an error, so that its straight lines stay straight; through the node they would tilt.
+    same side of every crease. What they do not determine stays zero. With f, which is not used, a regular mesh of a
+    tube gets normals without an error, so that its straight lines stay straight; through the node they would tilt.
     """
     count = int(sheet.max()) + 1
     node = np.zeros(count, dtype=np.int64)
