@@ -14,9 +14,10 @@ import magshell as ms
 from magshell.errors import InputError
 from magshell.mesh import Mesh
 from magshell.mesh.files.msh import read_msh
+from magshell.mesh.files.raising import raise_order
 from magshell.mesh.files.writing import msh
 
-from .same import attempted, described
+from .same import MISSING, attempted, described, first_order
 
 DATA = pathlib.Path(__file__).parent / "data"
 PLATES = ("two-plates-41.msh", "two-plates-22.msh")
@@ -179,6 +180,64 @@ def test_gmsh_reads_what_is_written(tmp_path):
         gmsh.finalize()
     expected = {name: len(rows) for name, rows in (mesh.element_groups | mesh.edge_groups | mesh.node_groups).items()}
     assert sizes == expected
+
+
+def mixed():
+    """Two squares of quadrilaterals, and between them two triangles; curved, in metres."""
+    plate = ms.mesh.rectangle(3.0, 1.0, (3, 1))
+    points, rows = first_order(plate)
+    middle = rows[1]
+    halves = [[middle[0], middle[1], middle[2]], [middle[0], middle[2], middle[3]]]
+    triangles = [[*corners, corners[2], MISSING, MISSING, corners[2], MISSING] for corners in halves]
+    rows = np.array([rows[0], *triangles, rows[2]])
+    points = np.stack([np.sin(0.4 * points[:, 0]), points[:, 1], np.cos(0.4 * points[:, 0])], axis=1)
+    raised = raise_order(points, rows)
+    return Mesh(raised.points, raised.rows, {"left": [0, 1], "right": [2, 3]})
+
+
+def test_triangles_beside_quadrilaterals(tmp_path):
+    """Written and read, by format 4.1 and, through gmsh, 2.2."""
+    mesh = mixed()
+    assert mesh.triangles.tolist() == [False, True, True, False]
+    ms.mesh.write(mesh, tmp_path / "mixed.msh", unit="mm")
+    again = ms.mesh.read(tmp_path / "mixed.msh")
+    assert described(again) == described(mesh)
+    assert again.origin.changes == ()
+    assert again.triangles.sum() == 2
+
+
+@needs_gmsh
+def test_triangles_of_gmsh(tmp_path):
+    """A rectangle of quadrilaterals that touches a disc of triangles, in every format and order."""
+    import gmsh
+
+    geometry = "SetFactory('OpenCASCADE');\nRectangle(1) = {0, 0, 0, 4, 2};\nDisk(2) = {2, 3, 0, 1.5};\n"
+    geometry += "BooleanFragments{ Surface{1, 2}; Delete; }{}\nRecombine Surface{1};\n"
+    (tmp_path / "mixed.geo").write_text(geometry)
+    gmsh.initialize(readConfigFiles=False, interruptible=False)
+    try:
+        for option, value in (("General.Terminal", 0), ("Mesh.MeshSizeMax", 0.6), ("Mesh.SecondOrderIncomplete", 1)):
+            gmsh.option.setNumber(option, value)
+        gmsh.open(str(tmp_path / "mixed.geo"))
+        gmsh.model.mesh.generate(2)
+        for order in (1, 2):
+            gmsh.model.mesh.setOrder(order)
+            for version in (2.2, 4.1):
+                gmsh.option.setNumber("Mesh.MshFileVersion", version)
+                gmsh.write(str(tmp_path / f"{order}-{version}.msh"))
+        quads = len(gmsh.model.mesh.getElementsByType(16)[0])
+        triangles = len(gmsh.model.mesh.getElementsByType(9)[0])
+    finally:
+        gmsh.finalize()
+    assert min(quads, triangles) > 10
+    for order in (1, 2):
+        old, new = (
+            ms.mesh.read(tmp_path / f"{order}-{version}.msh", unit="mm", second_order=order == 1)
+            for version in (2.2, 4.1)
+        )
+        assert described(old) == described(new)
+        assert (int((~new.triangles).sum()), int(new.triangles.sum())) == (quads, triangles)
+        assert ("raised" in " ".join(new.origin.changes)) == (order == 1)
 
 
 BROKEN = {
