@@ -16,8 +16,8 @@ from magshell.output.panels import colour_bar, colour_scale, draw_sequence
 from magshell.output.setup import draw_setup
 
 # %%
-# ``flower.geo`` names the petals, the hexagon and the post that holds it: their names are the groups of the mesh. It was
-# meshed by
+# ``flower.geo`` names the petals, the hexagon and the post that holds it: their names are the groups of the mesh. It
+# was meshed by
 #
 # .. code-block:: console
 #
@@ -92,5 +92,5 @@ draw_sequence(figure, groups, [f"{field:g} mT" for field in fields], places, sca
 colour_bar(figure, (0.89, 0.3, 0.018, 0.4), scale, "$u_3$ (mm)")
 
 # %%
-# In a tighter bud the petals would touch each other, which is not computed; here they do not. Folding, rolling and other
-# templates: :doc:`/remanence`.
+# In a tighter bud the petals would touch each other, which is not computed; here they do not. Folding, rolling and
+# other templates: :doc:`/remanence`.

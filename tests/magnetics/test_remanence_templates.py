@@ -191,6 +191,29 @@ def natural_order(graph):
     return np.arange(graph.shape[0])
 
 
+@pytest.mark.parametrize("k", [1.0, 4.0])
+def test_a_strip_returns_to_its_template_as_an_elastic_line_does(k):
+    """Magnetised on an arc of radius r, flat when released, in a field along b again.
+
+    The couple b × R Brem turns a section by θ(s) towards s/r: E I θ'' = (B M A / μ0) sin(θ - s/r), and for small angles
+    θ = s/r - sinh(κs) / (κ r cosh(κL)) with κ² = B M A / (μ0 E I) = (k/L)².
+    """
+    arc, magnitude, young, b = 0.1, 0.1, 2.0 * MU, np.array([0.6, 0.0, 0.8])
+    mesh = ms.mesh.rectangle(LENGTH, WIDTH, (12, 1))
+    remembered = remanence.template(roll(LENGTH / arc), magnitude, b)
+    material = ms.MicropolarNeoHookean(MU, 0.0, 0.0, 0.0)
+    flux = (k / LENGTH) ** 2 * 4e-7 * np.pi * young * HEIGHT**2 / 12 / magnitude
+    shell = ms.Shell(mesh, HEIGHT, material, remembered, micro_rotation=False)
+    clamped, field = [ms.Clamp("left")], ms.UniformField(flux * b)
+    path = ms.solve(ms.Model(shell, clamped, field, ms.DeformationGradientEnergy()), ms.Settings(first_step=0.5))
+    tip = mesh.node_at((LENGTH, 0, 0))
+    director = path.discretisation.nodal_director(path.steps[-1].state)[tip]
+    found = np.arctan2(-director[0], director[2])
+    expected = arc * (1.0 - np.tanh(k) / k)
+    small_angles, shear = arc**2 / 6, (HEIGHT / LENGTH * k) ** 2
+    assert found == pytest.approx(expected, rel=small_angles + shear), (found / expected - 1, small_angles, shear)
+
+
 def test_groups_of_templates_are_placed_and_the_rest_stays():
     corners = {"still": [(0, 0), (1, 0), (1, 1), (0, 1)], "flap": [(1, 0), (2, 0), (2, 1), (1, 1)]}
     mesh = ms.mesh.blocks(corners, elements=(2, 2))

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from magshell.mesh import Mesh
 
 ITERATIONS = 20
-CLOSE = 1e-13
+CLOSE = 1e-11
 FARTHEST = 1.5
 
 
