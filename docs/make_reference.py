@@ -1,7 +1,8 @@
-"""Write the tables and examples of `docs/problem-file.md` from the schema that reads problem files.
+"""Write the tables and examples of `docs/problem-file.md` from the schema that reads problem files, and the table of
+outputs of `docs/pictures.md` from the registry.
 
     python docs/make_reference.py            write
-    python docs/make_reference.py --check    exit with 1 if the page is not what would be written
+    python docs/make_reference.py --check    exit with 1 if a page is not what would be written
 
 What a key means is said here; its kind, and its default, are those of `magshell.problem.schema`.
 """
@@ -20,9 +21,11 @@ from pydantic_core import PydanticUndefined
 
 import magshell as ms
 from magshell import units
+from magshell.output.registry import OUTPUTS
 from magshell.problem import examples, fields, schema
 
 PAGE = pathlib.Path(__file__).parent / "problem-file.md"
+RESULTS = pathlib.Path(__file__).parent / "pictures.md"
 
 KINDS = {
     fields.Length: "length",
@@ -447,26 +450,39 @@ EXAMPLES = {
 
 
 def main() -> int:
-    """Write or check the page."""
+    """Write or check the pages."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--check", action="store_true", help="write nothing; exit with 1 if the page is stale")
+    parser.add_argument("--check", action="store_true", help="write nothing; exit with 1 if a page is stale")
     check = parser.parse_args().check
-    page = PAGE.read_text(encoding="utf-8")
-    fresh = filled(page)
-    if check and fresh != page:
-        print(f"{PAGE.name} is stale: run python docs/make_reference.py")
-        return 1
-    if not check:
-        PAGE.write_text(fresh, encoding="utf-8")
-    return 0
+    status = 0
+    for page, made in pages().items():
+        text = page.read_text(encoding="utf-8")
+        fresh = blocks.filled(text, made, "docs/make_reference.py")
+        if check and fresh != text:
+            print(f"{page.name} is stale: run python docs/make_reference.py")
+            status = 1
+        if not check:
+            page.write_text(fresh, encoding="utf-8")
+    return status
 
 
-def filled(page: str) -> str:
-    """The page with every block between its marks made anew."""
+def pages() -> dict[pathlib.Path, dict[str, str]]:
+    """The blocks of every page."""
     made = {name: table(name) for name in TABLES}
     made |= {name: f"```toml\n{examples.text(problem)}```" for name, problem in EXAMPLES.items()}
     made["units"] = units_table()
-    return blocks.filled(page, made, "docs/make_reference.py")
+    return {PAGE: made, RESULTS: {"outputs": outputs_table()}}
+
+
+def outputs_table() -> str:
+    """What a result holds."""
+    rows = ["| Name | Symbol | Unit | Of each | What it is |", "|---|---|---|---|---|"]
+    where = {"point": "node", "cell": "element"}
+    for output in OUTPUTS.values():
+        symbols = [f"`{output.symbol}`", *(f"`{output.symbol}{i}`" for i in (1, 2, 3) if output.components == 3)]
+        unit = output.unit or "1"
+        rows.append(f"| `{output.name}` | {', '.join(symbols)} | {unit} | {where[output.where]} | {output.sentence} |")
+    return "\n".join(rows)
 
 
 def table(name: str) -> str:

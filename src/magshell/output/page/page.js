@@ -63,6 +63,7 @@ function showColours() {
     scene.fill(scene.surface, "value", body.values);
   }
   showBar(map);
+  redraw();
 }
 
 function showBar(map) {
@@ -134,7 +135,6 @@ function go(step) {
   curves?.mark(state.step);
   showShape();
   showColours();
-  redraw();
 }
 
 function play(on) {
@@ -174,8 +174,8 @@ function choose() {
 }
 
 function listen() {
-  at("colour").addEventListener("change", () => { choose(); showColours(); redraw(); });
-  at("range").addEventListener("change", () => { showColours(); redraw(); });
+  at("colour").addEventListener("change", () => { choose(); showColours(); });
+  at("range").addEventListener("change", showColours);
   for (const id of ["edges", "arrows", "undeformed"]) at(id).addEventListener("change", () => { showShape(); redraw(); });
   at("slider").addEventListener("input", () => { play(false); go(Number(at("slider").value)); });
   at("play").addEventListener("click", () => play(!playing));
