@@ -9,6 +9,8 @@ from __future__ import annotations
 import pathlib
 import sys
 
+from sphinx.application import Sphinx
+
 import magshell
 
 HERE = pathlib.Path(__file__).parent
@@ -50,6 +52,7 @@ autosummary_generate = True
 autosummary_ignore_module_all = False
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
+toc_object_entries_show_parents = "hide"
 numpydoc_show_class_members = False
 numpydoc_class_members_toctree = False
 
@@ -95,3 +98,8 @@ html_theme_options = {
     "pygments_dark_style": "github-dark",
 }
 html_sidebars = {"index": [], "tutorial": [], "changelog": []}
+
+
+def setup(app: Sphinx) -> None:
+    """Fields of named tuples stand under Attributes already."""
+    app.connect("autodoc-skip-member", lambda *told: True if type(told[3]).__name__ == "_tuplegetter" else None)
