@@ -43,7 +43,7 @@ def run() -> None:
             window.open(folder / "results" / "view.html")
             window.do(SHOWN)
             content = io.BytesIO()
-            window.picture().quantize(255).save(content, format="png", optimize=True)
+            window.picture().save(content, format="png", optimize=True)
         write_atomically(DOCS / "images" / "view.png", content.getvalue())
 
 
