@@ -48,20 +48,17 @@ def test_points_in_triangles():
     """Triangles are rows whose corners 3 and 4 and the mid-side between them are one node; quadratics are exact."""
     corners = np.array([[0.0, 0.0, 0.0], [2.0, 0.1, 0.2], [0.3, 1.0, -0.1]])
     middles = 0.5 * (corners + np.roll(corners, -1, axis=0))
-
-    class Half:
-        points = np.concatenate([corners, middles])
-        elements = np.array([[0, 1, 2, 2, 3, 4, 2, 5]])
+    half = ms.mesh.Mesh(np.concatenate([corners, middles]), np.array([[0, 1, 2, 2, 3, 4, 2, 5]]))
 
     L = np.random.default_rng(3).dirichlet((1, 1, 1), 5)
     points = (L @ corners)[None]
-    inside = find(Half, points)
+    inside = find(half, points)
 
     def quadratic(x):
         return np.stack([x[..., 0] ** 2, x[..., 0] * x[..., 1], 1 + x[..., 2]], axis=-1)
 
-    assert np.abs(inside.at(quadratic(Half.points[Half.elements])) - quadratic(points)).max() < 1e-13
-    assert np.abs(np.cross(*np.moveaxis(inside.slopes(Half.points[Half.elements]), 2, 0)) - np.cross(
+    assert np.abs(inside.at(quadratic(half.points[half.elements])) - quadratic(points)).max() < 1e-13
+    assert np.abs(np.cross(*np.moveaxis(inside.slopes(half.points[half.elements]), 2, 0)) - np.cross(
         corners[1] - corners[0], corners[2] - corners[0]
     )).max() < 1e-13  # fmt: skip
 

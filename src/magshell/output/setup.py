@@ -14,6 +14,7 @@ import numpy as np
 from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError
 from magshell.magnetics.remanence import placed
+from magshell.mesh.edges import SIDES
 from magshell.output.marks import Mark, field_marks, load_marks, probe_marks, remanence_marks, support_marks
 from magshell.output.scene import (
     MOST_ELEMENTS_WITH_EDGES,
@@ -27,7 +28,7 @@ from magshell.output.scene import (
 )
 from magshell.output.shape import triad
 from magshell.output.style import DPI, GREY, INK, PALE, TEXT, deliver
-from magshell.output.tessellation import SIDES, Tessellation
+from magshell.output.tessellation import Tessellation
 from magshell.shell.triangle import REPEATED
 
 if TYPE_CHECKING:
@@ -188,6 +189,8 @@ def _place_body(plotter: Any, mesh: Mesh, shown: FloatArray, camera: Camera, siz
     import pyvista
 
     own = np.arange(8 * len(shown)).reshape(-1, 8)
+    own[:, 3] = np.where(mesh.triangles, own[:, 2], own[:, 3])
+    own[:, 6] = np.where(mesh.triangles, own[:, 2], own[:, 6])
     own[np.ix_(mesh.triangles, REPEATED)] = own[mesh.triangles, 2:3]
     cells = Tessellation(own)
     positions = shown.reshape(-1, 3)
@@ -198,10 +201,11 @@ def _place_body(plotter: Any, mesh: Mesh, shown: FloatArray, camera: Camera, siz
     plotter.add_mesh(body, scalars="colours", rgb=True, **(SURFACE | LIGHT))
     nearer = 1.5e-3 * size * camera.axes[2]
     thin, thick = ({"lighting": False, "line_width": OVERSAMPLING * width} for width in (0.8, 1.8))
-    sides = own[:, SIDES[:, [0, 2, 1]]].reshape(-1, 3)
-    outer = np.isin(mesh.elements[:, 4:].ravel(), mesh.boundary_edges[:, 2])
+    sides = own[:, SIDES].reshape(-1, 3)
+    real = sides[:, 0] != sides[:, 1]
+    outer = real & np.isin(mesh.elements[:, 4:].ravel(), mesh.boundary_edges[:, 2])
     if len(mesh.elements) <= MOST_ELEMENTS_WITH_EDGES:
-        plotter.add_mesh(polylines(cells.edges(positions + nearer, sides)), color=INK, opacity=0.22, **thin)
+        plotter.add_mesh(polylines(cells.edges(positions + nearer, sides[real])), color=INK, opacity=0.22, **thin)
     plotter.add_mesh(polylines(cells.edges(positions + nearer, sides[outer])), color=INK, **thick)
     if template:
         flat = Tessellation(mesh.elements).edges(mesh.points, mesh.boundary_edges)

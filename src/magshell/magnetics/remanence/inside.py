@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray
+from magshell.mesh.edges import is_triangle
 from magshell.shell.shape_functions import serendipity
+from magshell.shell.triangle import SLOTS, six_nodes
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh
@@ -49,7 +51,7 @@ class Inside(NamedTuple):
 def find(mesh: Mesh, points: FloatArray) -> Inside:
     """Functions at points (elements, points, 3) of the elements; NaN for points that are NaN."""
     X = mesh.points[mesh.elements]
-    triangles = mesh.elements[:, 2] == mesh.elements[:, 3]
+    triangles = is_triangle(mesh.elements)
     middle = np.where(triangles[:, None], 1.0 / 3.0, 0.0)
     parent = np.repeat(np.broadcast_to(middle, (len(X), 2))[:, None], points.shape[1], axis=1)
     for _ in range(ITERATIONS):
@@ -69,22 +71,10 @@ def _functions(parent: FloatArray, triangles: AnyArray) -> Inside:
     values, derivatives, _ = serendipity(parent.reshape(-1, 2))
     result = Inside(values.reshape(*shape, 8), derivatives.reshape(*shape, 2, 8))
     if triangles.any():
-        six = _triangle(parent[triangles])
-        result.values[triangles], result.derivatives[triangles] = six
+        r, s = np.moveaxis(parent[triangles], -1, 0)
+        N, dN = six_nodes(np.stack([1.0 - r - s, r, s], axis=-1).reshape(-1, 3))
+        six, along = np.zeros((*r.shape, 8)), np.zeros((*r.shape, 2, 8))
+        six[..., SLOTS] = N.reshape(*r.shape, 6)
+        along[..., SLOTS] = (dN[:, 1:] - dN[:, :1]).reshape(*r.shape, 2, 6)
+        result.values[triangles], result.derivatives[triangles] = six, along
     return result
-
-
-def _triangle(parent: FloatArray) -> Inside:
-    """Six quadratic functions in the places of eight: a, b, c, none, ab, bc, none, ca."""
-    r, s = parent[..., 0], parent[..., 1]
-    L = (1.0 - r - s, r, s)
-    dL = ((-1.0, -1.0), (1.0, 0.0), (0.0, 1.0))
-    values, derivatives = np.zeros((*r.shape, 8)), np.zeros((*r.shape, 2, 8))
-    for i in range(3):
-        values[..., i] = L[i] * (2.0 * L[i] - 1.0)
-        j, place = (i + 1) % 3, (4, 5, 7)[i]
-        values[..., place] = 4.0 * L[i] * L[j]
-        for a in range(2):
-            derivatives[..., a, i] = (4.0 * L[i] - 1.0) * dL[i][a]
-            derivatives[..., a, place] = 4.0 * (L[i] * dL[j][a] + L[j] * dL[i][a])
-    return Inside(values, derivatives)
