@@ -15,7 +15,7 @@ from magshell.errors import InputError
 from magshell.mesh.files.assembling import FileMesh, assemble
 from magshell.mesh.files.contents import GROUPED
 from magshell.mesh.files.from_gmsh import contents_of
-from magshell.mesh.files.paths import GEOMETRY, readable
+from magshell.mesh.files.paths import GEOMETRY, readable, textual
 from magshell.mesh.files.session import installed, quiet, session
 from magshell.mesh.files.units import agreed, length_unit
 from magshell.mesh.geometry import diagonal_normals
@@ -31,6 +31,7 @@ MOST_LEFT = 200
 DRAINED = 0.125
 DEFAULT_ELEMENTS = 800
 """About as many elements does a mesh have whose size nobody said."""
+MOST_ELEMENTS = 1_000_000
 GOOD = 0.3
 """Worst scaled Jacobian with which the first mesh is taken."""
 USABLE = 0.05
@@ -108,6 +109,7 @@ def from_cad(file: str | os.PathLike[str], size: float | None = None, unit: str 
     if suffix not in GEOMETRY:
         raise InputError(f"{name}: is not a geometry that gmsh meshes; there is: {', '.join(GEOMETRY)}")
     readable(path)
+    textual(path)
     if size is not None and not (math.isfinite(size) and size > 0.0):
         raise InputError(f"size = {size!r} is not allowed; it must be a positive length, in m")
     own = agreed(unit, CONVERTED if suffix in KNOWS_ITS_UNIT else None, name)
@@ -179,17 +181,25 @@ def _name_entity(gmsh: Any, dimension: int, entity: int) -> None:
 
 
 def set_size(gmsh: Any, size: float | None, suffix: str) -> None:
-    """The size of elements in the file's unit: as asked, else as the file says, else from the area."""
-    option = gmsh.option.setNumber
-    if size is None and suffix in SCRIPTS:
-        points = gmsh.model.getEntities(0)
-        said = gmsh.option.getNumber("Mesh.MeshSizeMax") < NO_SIZE or gmsh.option.getNumber(
-            "Mesh.MeshSizeFromCurvature"
-        )
-        if said or len(gmsh.model.mesh.field.list()) or (points and np.any(gmsh.model.mesh.getSizes(points))):
-            return
+    """The size of elements in the file's unit: as asked, else as the file says, else from the area.
+
+    Raises
+    ------
+    InputError
+        So small that nobody could solve on the mesh.
+    """
+    if size is None and suffix in SCRIPTS and _says_sizes(gmsh):
+        return
+    area = _area(gmsh)
     if size is None:
-        size = _size_from_area(gmsh)
+        size = float(f"{math.sqrt(area / DEFAULT_ELEMENTS):.2g}")
+    if area > MOST_ELEMENTS * size**2:
+        least = math.sqrt(area / MOST_ELEMENTS)
+        raise InputError(
+            f"size: {size:.3g} makes {area / size**2:.2g} elements; at most {MOST_ELEMENTS:.0e} can be solved: give at "
+            f"least {least:.2g} (in the file's unit)"
+        )
+    option = gmsh.option.setNumber
     for fixed in ("MeshSizeFromPoints", "MeshSizeFromCurvature", "MeshSizeExtendFromBoundary"):
         option(f"Mesh.{fixed}", 0)
     option("Mesh.MeshSizeFactor", 1)
@@ -197,15 +207,21 @@ def set_size(gmsh: Any, size: float | None, suffix: str) -> None:
     option("Mesh.MeshSizeMax", size)
 
 
-def _size_from_area(gmsh: Any) -> float:
-    """Side of a square of which so many make up the surface, measured on a coarse mesh of triangles."""
+def _says_sizes(gmsh: Any) -> bool:
+    """Whether a script says how large its elements are to be."""
+    options = gmsh.option.getNumber("Mesh.MeshSizeMax") < NO_SIZE or gmsh.option.getNumber("Mesh.MeshSizeFromCurvature")
+    points = gmsh.model.getEntities(0)
+    return bool(options or gmsh.model.mesh.field.list() or (points and np.any(gmsh.model.mesh.getSizes(points))))
+
+
+def _area(gmsh: Any) -> float:
+    """Of all surfaces, measured on a coarse mesh of triangles."""
     gmsh.option.setNumber("Mesh.RecombineAll", 0)
     gmsh.model.mesh.generate(2)
-    contents = contents_of(gmsh, "")
+    contents = contents_of(gmsh, "the geometry")
     corners = np.concatenate([block.kind.rows(block.nodes) for block in contents.blocks if block.kind.dimension == 2])
-    area = np.linalg.norm(diagonal_normals(contents.points[corners[:, :4]]), axis=1).sum()
     gmsh.model.mesh.clear()
-    return float(f"{math.sqrt(area / DEFAULT_ELEMENTS):.2g}")
+    return float(np.linalg.norm(diagonal_normals(contents.points[corners[:, :4]]), axis=1).sum())
 
 
 def _best(gmsh: Any, name: str, unit: str, attempts: tuple[Attempt, ...]) -> FileMesh:

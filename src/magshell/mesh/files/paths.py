@@ -32,3 +32,16 @@ def readable(path: pathlib.Path) -> None:
         raise InputError(f"{path}: is a folder; name a file in it") from None
     except (OSError, ValueError) as error:
         raise InputError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+
+
+def textual(path: pathlib.Path) -> None:
+    """Refuse what is no text at its beginning: gmsh may read in it for minutes.
+
+    Raises
+    ------
+    InputError
+        It is none.
+    """
+    with path.open("rb") as file:
+        if b"\0" in file.read(4096):
+            raise InputError(f"{path.name}: is not a text file; a geometry ({', '.join(GEOMETRY)}) is one")
