@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from magshell.model import Model
 
-# Below so many elements there is nothing to say: a solve needs less than half a gigabyte.
+# With fewer elements a solve needs well below a gigabyte.
 FEW_ELEMENTS = 500
 # From so many bytes on, or from this share of the free memory, a run says it.
 MUCH, SHARE = 1e9, 0.25

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import json
+import os
 import pathlib
 import shlex
 import signal
@@ -61,7 +62,8 @@ def run(given: argparse.Namespace) -> int:
         directory = pathlib.Path(given.resume)
         if not directory.is_dir():
             raise InputError(f"--resume {directory}: is not a folder; name one that `magshell run --out` made")
-        made(directory)
+        if not os.access(directory, os.W_OK | os.X_OK):
+            raise InputError(f"--resume {directory}: is not writable; copy the folder and go on in the copy")
     elif given.problem is None:
         raise InputError("run: name a problem file or a built-in problem (magshell examples lists them)")
     else:

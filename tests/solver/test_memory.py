@@ -1,0 +1,75 @@
+"""Memory that is told before a solve: the entries of the factors are those that the solver makes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+import magshell as ms
+from magshell import Model
+from magshell.assembly import Discretisation
+from magshell.cli import main
+from magshell.linalg import make_solver, nested_dissection
+from magshell.solver.memory import PER_ENTRY, factor_entries, memory_free, memory_needed
+from solver.models import arm, strip
+
+
+@pytest.mark.parametrize("make", [lambda: strip((24, 8)), lambda: arm((20, 6)), lambda: arm((20, 6), element="paper")])
+def test_entries_of_the_factors(make: Callable[[], Model]) -> None:
+    """SuperLU pads its supernodes by some percent on a mesh as small as this."""
+    model, solver = make(), make_solver("superlu")
+    discretisation = Discretisation(model, nested_dissection)
+    state = discretisation.undeformed()
+    matrix = discretisation.assemble(state, model.course(0).at(0.0), discretisation.stresses_at(state)).matrix
+    assert matrix is not None
+    solver.factorise(matrix)
+    made = solver._factors.nnz
+    assert factor_entries(model) == pytest.approx(made, rel=0.05), f"{factor_entries(model) / made:.3f}"
+
+
+def test_more_elements_need_more() -> None:
+    needs = [memory_needed(strip((2 * n, n))) for n in (8, 16)]
+    entries = [factor_entries(strip((2 * n, n))) for n in (8, 16)]
+    assert needs[1] - needs[0] > PER_ENTRY * (entries[1] - entries[0]) > 0.0
+
+
+def test_what_is_free() -> None:
+    free = memory_free()
+    assert free is None or 1e6 < free < 1e14
+
+
+@pytest.fixture
+def problem(tmp_path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """A run of which the memory matters."""
+    monkeypatch.setattr("magshell.cli.memory.FEW_ELEMENTS", 1)
+    (tmp_path / "small.toml").write_text(ms.problem.examples.text("strip-10"))
+    return ["run", str(tmp_path / "small.toml"), "--out", str(tmp_path / "out")]
+
+
+@pytest.mark.parametrize(
+    ("needed", "free", "said"),
+    [
+        (2e9, 1e9, "warning: memory: about 2 GB; 1 GB are free: the solve may be killed"),
+        (2e9, 64e9, "memory: about 2 GB; 64 GB are free"),
+        (2e9, None, "memory: about 2 GB"),
+        (2e8, 5e8, "memory: about 0.2 GB; 0.5 GB are free"),
+        (2e8, 64e9, None),
+        (2e8, None, None),
+    ],
+)
+def test_said_before_a_run(needed: float, free: float | None, said: str | None, problem, monkeypatch, capsys) -> None:
+    def not_today(*_: object) -> None:
+        raise ms.InputError("not today")
+
+    monkeypatch.setattr("magshell.solver.memory.memory_needed", lambda model: needed)
+    monkeypatch.setattr("magshell.solver.memory.memory_free", lambda: free)
+    monkeypatch.setattr("magshell.solver.solve", not_today)
+    assert main(problem) == 2
+    shown = capsys.readouterr().out
+    assert (said in shown) if said else ("memory" not in shown), shown
+
+
+def test_check_says_it(capsys) -> None:
+    assert main(["check", "strip-10"]) == 0
+    assert "memory of a solve" in capsys.readouterr().out
