@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     )
     from magshell.materials import MicropolarMooneyRivlin, MicropolarNeoHookean, MicropolarStVenantKirchhoff
     from magshell.model import Model, Shell
-    from magshell.solver import CriticalPoint, Observer, Path, Settings, Step, solve
+    from magshell.solver import CriticalPoint, Observer, Path, Settings, Step, resume, solve
     from magshell.solver.buckling import Buckling, BucklingMode, buckling
     from magshell.stages import Stage
     from magshell.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane
@@ -39,7 +39,7 @@ _HOME = {
     ),
     "magshell.materials": ("MicropolarMooneyRivlin", "MicropolarNeoHookean", "MicropolarStVenantKirchhoff"),
     "magshell.model": ("Model", "Shell"),
-    "magshell.solver": ("CriticalPoint", "Observer", "Path", "Settings", "Step", "solve"),
+    "magshell.solver": ("CriticalPoint", "Observer", "Path", "Settings", "Step", "resume", "solve"),
     "magshell.solver.buckling": ("Buckling", "BucklingMode", "buckling"),
     "magshell.stages": ("Stage",),
     "magshell.supports": ("Clamp", "Prescribe", "SimpleSupport", "SymmetryPlane"),
@@ -87,6 +87,7 @@ __all__ = [
     "problem",
     "remanence",
     "results",
+    "resume",
     "solve",
 ]
 

@@ -36,7 +36,7 @@ class Results:
     ----------
     problem : Problem
     path : Path
-        All converged steps; `magshell.solver.resume` goes on with it.
+        All converged steps; `magshell.resume` goes on with it.
     notes : list of str
         Why going on would not give the same bits as the run so far.
     """

@@ -53,7 +53,7 @@ class Waypoint(NamedTuple):
 
 
 def path_through(model: Model, settings: Settings, waypoints: Iterable[Waypoint]) -> Path:
-    """The path that was followed so far; `magshell.solver.resume` goes on with it.
+    """The path that was followed so far; `magshell.resume` goes on with it.
 
     Parameters
     ----------
