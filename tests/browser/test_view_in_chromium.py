@@ -25,6 +25,16 @@ from magshell.solver.path import Path
 STEPS, UNSTABLE, CRITICAL = 8, 5, 4
 TITLE = 'Größe "5" & <b>bold</b> </script><script>fail()</script> 磁石'
 PROBE = 'tip\'s "end" </script> <i>μ</i>'
+SIZE = 1000, 700
+AS_OPENED = """
+play(false);
+at("colour").value = header.colour;
+at("range").value = "path";
+for (const [box, on] of [["edges", header.edges], ["arrows", false], ["undeformed", true]]) at(box).checked = on;
+choose();
+camera.look(...header.view);
+go(header.steps.length - 1);
+"""
 AFTER_DRAWING = "await new Promise(drawn => requestAnimationFrame(() => requestAnimationFrame(drawn)));"
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=f"no test in a browser: {missing()} is not installed")
@@ -58,12 +68,18 @@ def shared() -> Iterator[Browser]:
 
 @pytest.fixture
 def window(shared: Browser, file: pathlib.Path) -> Iterator[Browser]:
-    """The page, just opened; whatever a test does, it complains of nothing and asks for nothing."""
-    shared.size(1400, 900)
-    shared.open(file)
+    """The page as it opens; whatever a test does, it complains of nothing and asks for nothing."""
+    if shared.driver.current_url == file.as_uri():
+        shared.size(*SIZE)
+        shared.do(AS_OPENED)
+        asked = set()
+    else:
+        shared.size(*SIZE)
+        shared.open(file)
+        asked = {file.as_uri()}
     yield shared
     assert shared.console() == []
-    assert {address for address in shared.requests() if not address.startswith("data:")} == {file.as_uri()}
+    assert {address for address in shared.requests() if not address.startswith("data:")} == asked
 
 
 def shape(window: Browser) -> np.ndarray:
