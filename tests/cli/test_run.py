@@ -182,3 +182,23 @@ def test_progress_on_a_terminal(strip: str, monkeypatch: pytest.MonkeyPatch) -> 
     ):
         assert words in shown, f"{words!r} is not in {shown!r}"
     assert not re.search(r"step 1  \d", shown), "no line per step on a terminal"
+
+
+def test_set(strip: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """What is changed stands in the copy of the problem, from which a run that is broken off goes on."""
+    out = tmp_path / "out"
+    assert (
+        main(["run", strip, "--set", "shell.thickness=1.2 mm", "--set", "field.flux_density=3 mT", "--out", str(out)])
+        == 0
+    )
+    assert "(shell.thickness = 1.2 mm, field.flux_density = 3 mT)" in capsys.readouterr().out
+    copy = problem.load(out / "problem.toml")
+    assert (copy.model.shell.thickness, copy.file.field.flux_density) == (1.2e-3, (0.0, 0.0, 3e-3))
+    assert rows(out)[-1]["B3"] == 3e-3
+    for arguments, words in (
+        (["run", strip, "--set", "shell.thickness=1,2 mm", "--out", str(out)], "has 2 values (1 mm, 2 mm, …)"),
+        (["run", strip, "--set", "shell.thicknes=1 mm", "--out", str(out)], "Did you mean 'thickness'"),
+        (["run", "--set", "shell.thickness=1 mm", "--resume", str(out)], "--resume alone"),
+    ):
+        assert main(arguments) == 2
+        assert words in capsys.readouterr().err

@@ -35,6 +35,7 @@ EXAMPLES = """
 examples:
   magshell run strip-10 --out results
   magshell run my-arm.toml --out results/my-arm
+  magshell run my-arm.toml --set shell.thickness="0.8 mm" --set field.flux_density="20 mT" --out results/thin
   magshell run --resume results/my-arm
 
 DIR receives history.csv (the curves), shell.pvd and steps/ (for ParaView), summary.json and the pictures, and where
@@ -46,6 +47,9 @@ kill, --resume goes on from the last one, to the same numbers as a run that was 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What follows the command."""
     parser.add_argument("problem", metavar="FILE|NAME", nargs="?", help="a problem file (.toml) or a built-in problem")
+    parser.add_argument(
+        "--set", metavar="KEY=VALUE", action="append", default=[], help="another value for a key (repeatable)"
+    )
     folder = parser.add_mutually_exclusive_group(required=True)
     folder.add_argument("--out", metavar="DIR", help="folder for the results, made if missing")
     folder.add_argument("--resume", metavar="DIR", help="go on with the run in this folder (no FILE then)")
@@ -57,19 +61,26 @@ def run(given: argparse.Namespace) -> int:
     from magshell.output.lock import alone
 
     if given.resume is not None:
-        if given.problem is not None:
-            raise InputError("run: --resume takes the problem from its folder; give FILE with --out, or --resume alone")
+        if given.problem is not None or given.set:
+            raise InputError(
+                "run: --resume takes the problem from its folder; give FILE and --set with --out, or --resume alone"
+            )
         directory = pathlib.Path(given.resume)
         if not directory.is_dir():
             raise InputError(f"--resume {directory}: is not a folder; name one that `magshell run --out` made")
+        if not os.path.lexists(directory / "problem.toml"):
+            raise InputError(
+                f"--resume {directory}: is not a results folder; one that `magshell run --out` made has a problem.toml"
+            )
         if not os.access(directory, os.W_OK | os.X_OK):
             raise InputError(f"--resume {directory}: is not writable; copy the folder and go on in the copy")
     elif given.problem is None:
         raise InputError("run: name a problem file or a built-in problem (magshell examples lists them)")
     else:
         from magshell.problem import load
+        from magshell.problem.alternatives import read_changes
 
-        problem = load(given.problem)
+        problem = load(given.problem, read_changes(given.set))
         directory = made(pathlib.Path(given.out))
     with alone(directory), _terminating():
         remove_temporaries(directory)
