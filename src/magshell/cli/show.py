@@ -42,7 +42,8 @@ def run(given: argparse.Namespace) -> int:
     ending = "template" if given.template else "show"
     file = _picture(given.out or f"{pathlib.Path(problem.source).stem}-{ending}.png")
     try:
-        draw_setup(problem.model, file, problem.title, given.template)
+        with out.status("drawing"):
+            draw_setup(problem.model, file, problem.title, given.template)
     except RenderingUnavailable as unavailable:
         complain(str(unavailable))
         return NOT_SOLVED
