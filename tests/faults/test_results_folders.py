@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from problem_files import STRIP
 
 from faults.damage import damaged
-from faults.limits import bounded, located, share
+from faults.limits import MUTATIONS, bounded, located, share
 from magshell import results
 from magshell.cli import main
 from magshell.errors import InputError
@@ -90,7 +90,7 @@ def dangling(file: Path) -> None:
 
 def huge(file: Path) -> None:
     with file.open("r+b") as opened:
-        opened.truncate(1 << 30)
+        opened.truncate(1 << (30 if MUTATIONS else 28))
 
 
 DAMAGES = [removed, emptied, foreign, a_folder, dangling, huge]
