@@ -16,6 +16,7 @@ import pytest
 from PIL import Image
 
 import magshell as ms
+from magshell.output.rendering import RenderingUnavailable, require_rendering
 
 ROOT = pathlib.Path(__file__).parents[2]
 NOT_PAGES = ("_build", "worked-examples", "generated", "__pycache__")
@@ -27,6 +28,10 @@ MODULES = ("magshell.mesh", "magshell.magnetics.remanence", "magshell.problem")
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
     """The folder of the built site; its sources are copied, so that nothing of an earlier build is in it."""
+    try:
+        require_rendering()
+    except RenderingUnavailable as unavailable:
+        pytest.skip(str(unavailable))
     folder = tmp_path_factory.mktemp("site")
     shutil.copytree(ROOT / "docs", folder / "docs", ignore=shutil.ignore_patterns(*NOT_PAGES))
     shutil.copy(ROOT / "CHANGELOG.md", folder)
