@@ -33,10 +33,10 @@ DOCS = pathlib.Path(__file__).parent
 COMMAND = "docs/make_mesh_figure.py"
 FLOWER = DOCS / "meshes" / "flower.geo"
 SIZE = 0.8e-3
-SHOWN = (ATTEMPTS[0], ATTEMPTS[2])
+SHOWN = (ATTEMPTS[1], ATTEMPTS[2])
 NAMES = {
-    ATTEMPTS[0]: "quasi-structured (11)",
-    ATTEMPTS[1]: "frontal Delaunay (6), full-quad blossom (3)",
+    ATTEMPTS[0]: "frontal Delaunay (6), full-quad blossom (3)",
+    ATTEMPTS[1]: "quasi-structured (11)",
     ATTEMPTS[2]: "frontal Delaunay (6), blossom (1)",
     ATTEMPTS[3]: "Delaunay (5), blossom (1)",
     ATTEMPTS[4]: "frontal Delaunay (6), triangles",

@@ -150,6 +150,8 @@ def test_what_cannot_be_meshed(tmp_path):
         ms.mesh.from_cad(tmp_path / "box.geo")
     with pytest.raises(InputError, match=r"unit: is 'm', but empty.step says that its lengths are in mm"):
         ms.mesh.from_cad(tmp_path / "empty.step", unit="m")
+    with pytest.raises(InputError, match=r"size: 1e-05 makes 2.8e\+12 elements; .* give at least 0.017"):
+        ms.mesh.from_cad(FLOWER, size=1e-8, unit="mm")
     with pytest.raises(InputError, match=r"size = -1.0 is not allowed"):
         ms.mesh.from_cad(tmp_path / "box.geo", size=-1.0, unit="mm")
 

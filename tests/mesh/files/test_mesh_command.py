@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 import pathlib
 import shutil
+import signal
+import subprocess
+import sys
+import time
 
 import numpy as np
 import pytest
@@ -125,6 +130,24 @@ def test_a_geometry_is_meshed(folder, capsys):
     assert said(capsys, "two-plates.geo", "--unit", "mm", "--out", "two-plates.msh")[0] == 0
 
 
+@needs_gmsh
+def test_ctrl_c_ends_gmsh_at_once(folder):
+    """Though gmsh cannot be stopped; nothing is written, not even half a file."""
+    command = [sys.executable, "-m", "magshell", "mesh", "plate.geo", "--unit", "mm", "--size", "0.0032 mm"]
+    pathlib.Path("plate.geo").write_text("SetFactory('OpenCASCADE');\nRectangle(1) = {0, 0, 0, 3, 3};\n")
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline() == "meshing plate.geo with gmsh ...\n"
+        time.sleep(1.0)
+        process.send_signal(signal.SIGINT)
+        start = time.monotonic()
+        _, complaint = process.communicate(timeout=60)
+    seconds = time.monotonic() - start
+    assert process.returncode == 130
+    assert complaint == "error: interrupted; nothing was written\n"
+    assert seconds < 10.0, seconds
+    assert "plate.msh" not in os.listdir()
+
+
 REFUSED = {
     "no unit": (["two-plates-41.msh"], "unit: is missing: two-plates-41.msh does not say"),
     "no such unit": (["two-plates-41.msh", "--unit", "inch"], "unit: 'inch' is not a unit of length"),
@@ -146,7 +169,7 @@ def test_bad_requests(what, folder, capsys):
     assert status == 2
     assert complaint.startswith("error: ")
     assert message in complaint, complaint
-    assert out == ""
+    assert out in ("", "meshing two-plates.geo with gmsh ...\n")
 
 
 def problem(folder, mesh):

@@ -50,13 +50,16 @@ class Attempt(NamedTuple):
     recombine: bool = True
 
 
+QUASI_STRUCTURED = Attempt(11, 0)
 ATTEMPTS = (
-    Attempt(11, 0),  # quasi-structured quadrilaterals: the best corners by far, but it fails on some surfaces
-    Attempt(6, 3),  # frontal Delaunay, recombined (blossom) to quadrilaterals only: not for periodic surfaces
-    Attempt(6, 1),  # frontal Delaunay, recombined (blossom): keeps a transfinite surface as it is; triangles may remain
-    Attempt(5, 1),  # Delaunay, recombined (blossom)
+    Attempt(6, 3),  # frontal Delaunay, blossom to quadrilaterals only: fast, sizes as asked; not for periodic surfaces
+    QUASI_STRUCTURED,  # the best corners on coarse meshes and tubes; slow and less sure on fine ones
+    Attempt(6, 1),  # frontal Delaunay, blossom: keeps a transfinite surface as it is; triangles may remain
+    Attempt(5, 1),  # Delaunay, blossom
     Attempt(6, 0, recombine=False),  # triangles: always possible
 )
+MANY = 5000
+"""With more elements than this the quasi-structured attempt is the last before triangles: it takes minutes."""
 STRUCTURED = 2
 """The attempt that begins where the file says itself how its surfaces are to be divided."""
 
@@ -116,9 +119,12 @@ def from_cad(file: str | os.PathLike[str], size: float | None = None, unit: str 
     try:
         with session(name) as gmsh:
             open_geometry(gmsh, path, name)
-            set_size(gmsh, None if size is None else size / length_unit(own), suffix)
+            expected = set_size(gmsh, None if size is None else size / length_unit(own), suffix)
             structured = suffix in SCRIPTS and "Transfinite" in path.read_text("utf-8", "replace")
-            return _best(gmsh, name, own, ATTEMPTS[STRUCTURED if structured else 0 :])
+            attempts = ATTEMPTS[STRUCTURED:] if structured else ATTEMPTS
+            if expected > MANY:
+                attempts = tuple(sorted(attempts, key=lambda each: (not each.recombine, each == QUASI_STRUCTURED)))
+            return _best(gmsh, name, own, attempts)
     except InputError:
         if suffix in SCRIPTS and installed():
             _drain(name)
@@ -180,8 +186,13 @@ def _name_entity(gmsh: Any, dimension: int, entity: int) -> None:
         gmsh.model.setPhysicalName(dimension, tag, name)
 
 
-def set_size(gmsh: Any, size: float | None, suffix: str) -> None:
+def set_size(gmsh: Any, size: float | None, suffix: str) -> float:
     """The size of elements in the file's unit: as asked, else as the file says, else from the area.
+
+    Returns
+    -------
+    float
+        About how many elements that makes; 0 if the file says the size.
 
     Raises
     ------
@@ -189,7 +200,7 @@ def set_size(gmsh: Any, size: float | None, suffix: str) -> None:
         So small that nobody could solve on the mesh.
     """
     if size is None and suffix in SCRIPTS and _says_sizes(gmsh):
-        return
+        return 0.0
     area = _area(gmsh)
     if size is None:
         size = float(f"{math.sqrt(area / DEFAULT_ELEMENTS):.2g}")
@@ -205,13 +216,14 @@ def set_size(gmsh: Any, size: float | None, suffix: str) -> None:
     option("Mesh.MeshSizeFactor", 1)
     option("Mesh.MeshSizeMin", size)
     option("Mesh.MeshSizeMax", size)
+    return area / size**2
 
 
 def _says_sizes(gmsh: Any) -> bool:
     """Whether a script says how large its elements are to be."""
     options = gmsh.option.getNumber("Mesh.MeshSizeMax") < NO_SIZE or gmsh.option.getNumber("Mesh.MeshSizeFromCurvature")
     points = gmsh.model.getEntities(0)
-    return bool(options or gmsh.model.mesh.field.list() or (points and np.any(gmsh.model.mesh.getSizes(points))))
+    return bool(options or len(gmsh.model.mesh.field.list()) or np.any(gmsh.model.mesh.getSizes(points)))
 
 
 def _area(gmsh: Any) -> float:
@@ -253,8 +265,9 @@ def meshed(gmsh: Any, name: str, unit: str, attempt: Attempt) -> Candidate:
     option("Mesh.RecombineAll", 1 if attempt.recombine else 0)
     option("Mesh.ElementOrder", 1)
     option("Mesh.SecondOrderIncomplete", 1)
-    gmsh.model.mesh.generate(2)
-    gmsh.model.mesh.setOrder(2)
+    with quiet():
+        gmsh.model.mesh.generate(2)
+        gmsh.model.mesh.setOrder(2)
     if name.lower().endswith(IGES):
         gmsh.model.mesh.removeDuplicateNodes()
     _put_on_surfaces(gmsh)
