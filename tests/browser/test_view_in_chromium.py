@@ -272,3 +272,30 @@ def test_triangles_and_quadrilaterals_are_drawn_as_in_pictures(shared, tmp_path)
     assert np.abs(normals.reshape(-1, 3) - surface.normals).max() < 2e-3
     np.testing.assert_array_equal(triangles.reshape(-1, 3), surface.triangles)
     assert shared.console() == []
+
+
+def test_path_that_has_not_begun_is_shown(shared, tmp_path):
+    """The undeformed state alone: no field, no extent of the curves, one value of every colour."""
+    path = rolled(plate((2, 2)), 1)
+    del path.steps[1:]
+    path.converged, path.reason = False, "interrupted"
+    shared.open(write_page(path, tmp_path / "begun.html"))
+    assert text(shared, "field") == "no field"
+    assert text(shared, "step") == "step 0 of 0"
+    assert "NaN" not in shared.driver.execute_script("return document.querySelector('main').outerHTML")
+    assert shared.console() == []
+
+
+def test_browser_without_webgl_shows_the_curves(shared, file):
+    without = "HTMLCanvasElement.prototype.getContext = () => null;"
+    command = "Page.addScriptToEvaluateOnNewDocument"
+    script = shared.driver.execute_cdp_cmd(command, {"source": without})
+    try:
+        shared.driver.get(file.as_uri())
+        shared.do("go(2);" + AFTER_DRAWING)
+        assert "WebGL 2 is missing" in text(shared, "message")
+        assert text(shared, "step") == f"step 2 of {STEPS}"
+        assert len(ring(shared)) > 0
+        assert shared.console() == []
+    finally:
+        shared.driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", script)

@@ -6,16 +6,19 @@ import base64
 import html
 import json
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from conftest import FakePath
 
 from magshell.errors import InputError
+from magshell.materials import MicropolarMooneyRivlin, MicropolarNeoHookean, MicropolarStVenantKirchhoff
 from magshell.output import registry
 from magshell.output.animation import draw_steps
 from magshell.output.page import page, write_page
 from magshell.output.page.arrays import LARGEST, MISSING, quantised, span
+from magshell.output.page.facts import facts
 from magshell.output.registry import OUTPUTS, Output
 from magshell.output.vtu import grid
 
@@ -131,3 +134,20 @@ def test_new_output_appears_everywhere(path, tmp_path, monkeypatch, can_draw):
     (picture,) = draw_steps(path, path.steps[-1:], tmp_path, "H")
     (other,) = draw_steps(path, path.steps[-1:], tmp_path / "u3", "u3")
     assert picture.read_bytes() != other.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("law", "words"),
+    [
+        (MicropolarNeoHookean, "micropolar neo-Hookean"),
+        (MicropolarMooneyRivlin, "micropolar Mooney–Rivlin"),
+        (MicropolarStVenantKirchhoff, "micropolar St. Venant–Kirchhoff"),
+    ],
+)
+def test_problem_is_described_in_words(path, law, words):
+    path.model.shell.material = type(law.__name__, (SimpleNamespace,), {})(shear_modulus=135e3)
+    said = dict(facts(path))
+    assert said["material"] == f"{words}, shear modulus 135 kPa"
+    assert (said["thickness"], said["remanence"]) == ("0.9 mm", "up to 80 mT")
+    path.discretisation.body.remanence = 0 * path.discretisation.body.remanence
+    assert dict(facts(path))["remanence"] == "none"

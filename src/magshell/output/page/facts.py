@@ -15,18 +15,25 @@ if TYPE_CHECKING:
     from magshell.solver.path import Path
 
 Facts: TypeAlias = Sequence[tuple[str, str]]
+PEOPLE = {
+    "neo hookean": "neo-Hookean",
+    "st venant kirchhoff": "St. Venant–Kirchhoff",
+    "mooney rivlin": "Mooney–Rivlin",
+}
 
 
 def facts(path: Path) -> Facts:
     """Label and text of each: material, thickness, remanence, mesh, how the path ended, version."""
     shell = path.model.shell
     material = shell.material
-    words = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(material).__name__).lower().replace("hookean", "Hookean")
+    words = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(material).__name__).lower()
+    for people, proper in PEOPLE.items():
+        words = words.replace(people, proper)
     remanence = float(np.linalg.norm(path.discretisation.body.remanence, axis=-1).max())
     lines = [
         ("material", f"{words}, shear modulus {show(material.shear_modulus, STRESS)}"),
         ("thickness", show(shell.thickness, LENGTH)),
-        ("remanence", f"up to {show(remanence, FLUX_DENSITY)}"),
+        ("remanence", f"up to {show(remanence, FLUX_DENSITY)}" if remanence else "none"),
         ("mesh", f"{len(path.discretisation.mesh.elements)} elements, {path.discretisation.dofs} unknowns"),
     ]
     if not path.converged:
