@@ -1,6 +1,6 @@
 """Peak memory of a solve against what is told before it: square plates and strips of 1 000 to 30 000 elements.
 
-python benchmarks/memory.py [LARGEST]       LARGEST: elements (default 10 000; 30 000 take 12 GB and many minutes)
+python benchmarks/memory.py [LARGEST]       LARGEST: elements (default 10 000; 30 000 take 8 GB and some minutes)
 
 A peak is reached when the tangent is factorised and its pivots are counted, twice: the solver then holds no more at any
 later iteration. Each size runs in a process of its own.
@@ -15,26 +15,30 @@ import sys
 import magshell as ms
 from magshell.assembly import Discretisation
 from magshell.linalg import make_solver, nested_dissection
-from magshell.solver.memory import factor_entries, memory_needed
+from magshell.solver.memory import need_of
 
-SIZES = ((1000, "square"), (1000, "strip"), (3000, "square"), (3000, "strip"), (10000, "strip"), (30000, "strip"))
+SIZES = (
+    (1000, "square", "quadratic"), (1000, "strip", "quadratic"), (3000, "square", "quadratic"),
+    (3000, "strip", "quadratic"), (3000, "square", "paper"), (10000, "strip", "quadratic"),
+    (10000, "square", "paper"), (30000, "strip", "paper"),
+)  # fmt: skip
 STRIP = 4
 
 
-def plate(elements: int, shape: str) -> ms.Model:
+def plate(elements: int, shape: str, element: str) -> ms.Model:
     """A clamped plate in a field."""
     across = round(elements**0.5) if shape == "square" else STRIP
     divisions = (elements // across, across)
     mesh = ms.mesh.rectangle(0.1, 0.1 * divisions[1] / divisions[0], divisions)
     material = ms.MicropolarNeoHookean(303e3, 7.3e6, 30.3e3, 1e-4)
-    shell = ms.Shell(mesh, 1e-3, material, ms.remanence.constant([0.143, 0.0, 0.0]))
+    shell = ms.Shell(mesh, 1e-3, material, ms.remanence.constant([0.143, 0.0, 0.0]), element)
     return ms.Model(shell, [ms.Clamp("left")], ms.UniformField([0.0, 0.0, 1e-3]))
 
 
-def measure(elements: int, shape: str) -> None:
+def measure(elements: int, shape: str, element: str) -> None:
     """Print a row."""
-    model, solver = plate(elements, shape), make_solver("superlu")
-    told, entries = memory_needed(model), factor_entries(model)
+    model, solver = plate(elements, shape, element), make_solver("superlu")
+    need = need_of(model)
     discretisation = Discretisation(model, nested_dissection)
     state = discretisation.undeformed()
     for _ in range(2):
@@ -44,21 +48,21 @@ def measure(elements: int, shape: str) -> None:
         solver.negative_pivots()
     peak = 1024.0 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     print(
-        f"{shape:6} {len(model.shell.mesh.elements):8} {discretisation.dofs:9} {entries:12.4g} {told / 1e9:9.2f} "
-        f"{peak / 1e9:9.2f} {told / peak:6.2f}",
+        f"{shape:6} {element:10}{len(model.shell.mesh.elements):8} {discretisation.dofs:9} {need.factors:12.4g} "
+        f"{need.memory / 1e9:9.2f} {peak / 1e9:9.2f} {need.memory / peak:6.2f}",
         flush=True,
     )
 
 
 def main() -> None:
     """Print the table."""
-    if len(sys.argv) == 3:
-        return measure(int(sys.argv[1]), sys.argv[2])
+    if len(sys.argv) == 4:
+        return measure(int(sys.argv[1]), *sys.argv[2:])
     largest = int(sys.argv[1]) if len(sys.argv) > 1 else 10000
-    print("mesh   elements  unknowns      entries  told, GB  peak, GB  ratio", flush=True)
-    for elements, shape in SIZES:
+    print("mesh   element   elements  unknowns      entries  told, GB  peak, GB  ratio", flush=True)
+    for elements, shape, element in SIZES:
         if elements <= largest:
-            subprocess.run([sys.executable, __file__, str(elements), shape], check=True)
+            subprocess.run([sys.executable, __file__, str(elements), shape, element], check=True)
     return None
 
 

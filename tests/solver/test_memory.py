@@ -11,7 +11,7 @@ from magshell import Model
 from magshell.assembly import Discretisation
 from magshell.cli import main
 from magshell.linalg import make_solver, nested_dissection
-from magshell.solver.memory import PER_ENTRY, factor_entries, memory_free, memory_needed
+from magshell.solver.memory import PER_ENTRY, Need, memory_free, need_of
 from solver.models import arm, strip
 
 
@@ -25,13 +25,14 @@ def test_entries_of_the_factors(make: Callable[[], Model]) -> None:
     assert matrix is not None
     solver.factorise(matrix)
     made = solver._factors.nnz
-    assert factor_entries(model) == pytest.approx(made, rel=0.05), f"{factor_entries(model) / made:.3f}"
+    need = need_of(model)
+    assert need.factors == pytest.approx(made, rel=0.05), f"{need.factors / made:.3f}"
+    assert need.tangent == matrix.nnz
 
 
 def test_more_elements_need_more() -> None:
-    needs = [memory_needed(strip((2 * n, n))) for n in (8, 16)]
-    entries = [factor_entries(strip((2 * n, n))) for n in (8, 16)]
-    assert needs[1] - needs[0] > PER_ENTRY * (entries[1] - entries[0]) > 0.0
+    few, more = (need_of(strip((2 * n, n))) for n in (8, 16))
+    assert more.memory - few.memory > PER_ENTRY * (more.factors - few.factors) > 0.0
 
 
 def test_what_is_free() -> None:
@@ -62,12 +63,37 @@ def test_said_before_a_run(needed: float, free: float | None, said: str | None, 
     def not_today(*_: object) -> None:
         raise ms.InputError("not today")
 
-    monkeypatch.setattr("magshell.solver.memory.memory_needed", lambda model: needed)
+    monkeypatch.setattr("magshell.solver.memory.need_of", lambda model: Need(needed, 1e6, 1e6))
     monkeypatch.setattr("magshell.solver.memory.memory_free", lambda: free)
     monkeypatch.setattr("magshell.solver.solve", not_today)
     assert main(problem) == 2
     shown = capsys.readouterr().out
     assert (said in shown) if said else ("memory" not in shown), shown
+
+
+def test_too_many_entries_for_superlu(problem, monkeypatch, capsys) -> None:
+    """Said before, and when SuperLU finds no memory for them."""
+
+    def no_memory(*_: object, **__: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr("magshell.linalg.solver.MOST_ENTRIES", 1000)
+    monkeypatch.setattr("scipy.sparse.linalg.splu", no_memory)
+    monkeypatch.setattr("magshell.solver.memory.need_of", lambda model: Need(1e8, 1e6, 1e6))
+    assert main(problem) == 2
+    shown = capsys.readouterr()
+    assert "warning: the tangent has 1 million entries; SuperLU takes up to 0 million" in shown.out
+    assert 'SuperLU takes up to 0 million. Take fewer elements, or linear_solver = "pardiso"' in shown.err
+
+
+def test_no_memory(problem, monkeypatch, capsys) -> None:
+    def no_memory(*_: object, **__: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr("scipy.sparse.linalg.splu", no_memory)
+    monkeypatch.setattr("magshell.solver.memory.need_of", lambda model: Need(1e8, 1e6, 1e6))
+    assert main(problem) == 1
+    assert capsys.readouterr().err == "error: small.toml: there is not enough memory\n"
 
 
 def test_check_says_it(capsys) -> None:

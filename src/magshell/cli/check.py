@@ -24,11 +24,11 @@ def run(given: argparse.Namespace) -> int:
     """Say what was understood."""
     from magshell.problem import load
     from magshell.problem.report import describe
-    from magshell.solver.memory import memory_free, memory_needed
+    from magshell.solver.memory import memory_free, need_of
 
     problem = load(given.problem)
     report = describe(problem)
-    report.sections["Mesh"].append(("memory of a solve", memory_line(memory_needed(problem.model), memory_free())))
+    report.sections["Mesh"].append(("memory of a solve", memory_line(need_of(problem.model).memory, memory_free())))
     out = console()
     width = max(len(label) for lines in report.sections.values() for label, _ in lines)
     for section, lines in report.sections.items():

@@ -9,7 +9,7 @@ from magshell.cli.console import say
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from magshell.model import Model
+    from magshell.problem.building import Problem
 
 # With fewer elements a solve needs well below a gigabyte.
 FEW_ELEMENTS = 500
@@ -22,17 +22,24 @@ def memory_line(needed: float, free: float | None) -> str:
     return f"about {_shown(needed)}" + (f"; {_shown(free)} are free" if free is not None else "")
 
 
-def say_memory(on: Console, model: Model) -> None:
-    """The need of a large solve; a warning where it will not fit."""
-    from magshell.solver.memory import memory_free, memory_needed
+def say_memory(on: Console, problem: Problem) -> None:
+    """The need of a large solve; warnings where it will fail."""
+    from magshell.linalg.solver import MOST_ENTRIES
+    from magshell.solver.memory import memory_free, need_of
 
-    if len(model.shell.mesh.elements) < FEW_ELEMENTS:
+    if len(problem.model.shell.mesh.elements) < FEW_ELEMENTS:
         return
-    needed, free = memory_needed(model), memory_free()
-    line = f"memory: {memory_line(needed, free)}"
-    if free is not None and needed > free:
+    need, free = need_of(problem.model), memory_free()
+    if problem.settings.linear_solver == "superlu" and need.tangent > MOST_ENTRIES:
+        text = (
+            f"the tangent has {need.tangent / 1e6:.0f} million entries; SuperLU takes up to {MOST_ENTRIES / 1e6:.0f} "
+        )
+        text += 'million: the solve will fail; take fewer elements or solver.linear_solver = "pardiso"'
+        say(on, f"warning: {text}", style="yellow")
+    line = f"memory: {memory_line(need.memory, free)}"
+    if free is not None and need.memory > free:
         say(on, f"warning: {line}: the solve may be killed; take fewer elements or a larger machine", style="yellow")
-    elif needed > MUCH or (free is not None and needed > SHARE * free):
+    elif need.memory > MUCH or (free is not None and need.memory > SHARE * free):
         say(on, line)
 
 

@@ -97,7 +97,7 @@ def _new(problem: Problem, directory: pathlib.Path) -> int:
     say(out, problem.title)
     say_origin(out, problem.model.shell.mesh)
     say_doubts(out, describe(problem))
-    say_memory(out, problem.model)
+    say_memory(out, problem)
     _forget_earlier_run(out, directory)
     results.make(problem, directory)
     return _follow(out, problem, directory, lambda observers: solve(problem.model, problem.settings, observers))
@@ -141,8 +141,11 @@ def _follow(
         complain(f"{problem.source}: not solved: {error.reason}")
     except BrokenPipeError:
         raise
-    except (KeyboardInterrupt, OSError) as stop:
+    except (KeyboardInterrupt, OSError, MemoryError) as stop:
         kept = len(step_files(directory)) - 1
+        if isinstance(stop, MemoryError) and kept < 0:
+            complain(f"{problem.source}: {_reason(stop)}")
+            return NOT_SOLVED
         if progress.path is None or kept < 0:
             raise
         reason = _reason(stop)
@@ -150,7 +153,7 @@ def _follow(
             write_summary(progress.path, directory, reason)
         complain(f"{problem.source}: {reason}; the {kept} steps that converged are in {directory}")
         complain(f"go on with: magshell run --resume {shlex.quote(str(directory))}")
-        return NOT_SOLVED if isinstance(stop, OSError) else INTERRUPTED
+        return INTERRUPTED if isinstance(stop, KeyboardInterrupt) else NOT_SOLVED
     write_summary(path, directory)
     for name in problem.file.probes:
         u = path.probe(name).u[-1]
@@ -186,9 +189,11 @@ def _terminating() -> Iterator[None]:
 
 
 def _reason(stop: BaseException) -> str:
-    """Why a run was stopped from outside."""
+    """What stopped a run."""
     if isinstance(stop, OSError):
         return f"{stop.filename or 'a file'}: {stop.strerror or stop}"
+    if isinstance(stop, MemoryError):
+        return "there is not enough memory"
     return "terminated" if isinstance(stop, _Terminated) else "interrupted"
 
 

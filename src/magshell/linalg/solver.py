@@ -102,6 +102,8 @@ class _Equilibrated:
 
 
 _SYMMETRIC = {"SymmetricMode": True}
+# SuperLU makes room for 30 times the entries of a matrix and counts that in 32 bits; beyond, it finds no memory.
+MOST_ENTRIES = 2**31 // 30
 
 
 class SuperLU(_Equilibrated):
@@ -125,6 +127,13 @@ class SuperLU(_Equilibrated):
             shifted = self._matrix + 1e-10 * sp.eye_array(self._matrix.shape[0], format="csc")
             self._factors = splu(sp.csc_array(shifted), permc_spec="NATURAL", diag_pivot_thresh=1.0)
             raise SingularMatrix(self.smallest_eigenpair()[1]) from None
+        except MemoryError:
+            if self._matrix.nnz <= MOST_ENTRIES:
+                raise
+            raise InputError(
+                f"solver: the tangent has {self._matrix.nnz / 1e6:.0f} million entries; SuperLU takes up to "
+                f'{MOST_ENTRIES / 1e6:.0f} million. Take fewer elements, or linear_solver = "pardiso" (an extra)'
+            ) from None
 
     def negative_pivots(self) -> int | None:
         """See `LinearSolver`. Where rows were exchanged, of a factorisation that exchanges none."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import pathlib
 import sys
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
@@ -21,13 +22,26 @@ from magshell.numbering import columns_of
 PROGRAM, PER_ELEMENT, PER_ENTRY = 300e6, 100e3, 30.0
 
 
-def memory_needed(model: Model) -> float:
-    """Bytes at the peak of a solve, to a third or so (SuperLU)."""
-    return PROGRAM + PER_ELEMENT * len(model.shell.mesh.elements) + PER_ENTRY * factor_entries(model)
+class Need(NamedTuple):
+    """What a solve will take.
+
+    Attributes
+    ----------
+    memory : float
+        Bytes at its peak, to a third or so (SuperLU).
+    factors : float
+        Entries of both triangular factors of the tangent.
+    tangent : float
+        Entries of the tangent.
+    """
+
+    memory: float
+    factors: float
+    tangent: float
 
 
-def factor_entries(model: Model) -> float:
-    """Entries of both triangular factors of the tangent."""
+def need_of(model: Model) -> Need:
+    """What a solve of a model will take."""
     from scipy.sparse.linalg import splu
 
     mesh, nodes = model.shell.mesh, len(model.shell.mesh.points)
@@ -37,10 +51,19 @@ def factor_entries(model: Model) -> float:
     graph = sp.csr_array(incidence.T @ incidence)
     order = nested_dissection(graph)
     unknowns = (columns_of(model.shell.carriers) & ~model.constraints.fixed).sum(axis=1)[order].astype(float)
-    dominant = sp.csc_array(graph[order][:, order] + 1e3 * sp.eye_array(nodes))
+    ordered = graph[order][:, order]
+    dominant = sp.csc_array(ordered + 1e3 * sp.eye_array(nodes))
     factors = splu(dominant, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    lower = sp.csc_array((np.ones(factors.L.nnz), factors.L.indices, factors.L.indptr), shape=factors.L.shape)
-    return float(2.0 * unknowns @ (lower @ unknowns) - unknowns @ unknowns)
+    entries = 2.0 * unknowns @ (_ones(factors.L) @ unknowns) - unknowns @ unknowns
+    memory = PROGRAM + PER_ELEMENT * elements + PER_ENTRY * entries
+    return Need(float(memory), float(entries), float(unknowns @ (_ones(ordered) @ unknowns)))
+
+
+def _ones(matrix: Any) -> Any:
+    """The same entries, each 1."""
+    ones = matrix.copy()
+    ones.data = np.ones_like(ones.data)
+    return ones
 
 
 def memory_free() -> float | None:
