@@ -162,6 +162,19 @@ def test_a_dask_cluster_that_cannot_solve(cluster: str, tmp_path: Path) -> None:
         DaskWorkers(cluster, tmp_path / "no")
 
 
+def test_a_dask_scheduler_that_goes_away(cluster: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def gone() -> None:
+        raise RuntimeError("closed")
+
+    workers = DaskWorkers(cluster, tmp_path)
+    assert workers.places == 2
+    monkeypatch.setattr(workers._client, "nthreads", gone)
+    with pytest.raises(ConnectionError, match="the scheduler does not answer any more") as error:
+        _ = workers.places
+    workers.close()
+    assert error.value.filename == cluster
+
+
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense://x", "127.0.0.1:99999999"])
 def test_no_dask_scheduler(address: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed")

@@ -67,6 +67,9 @@ def run(given: argparse.Namespace) -> int:
         except KeyboardInterrupt:
             complain(f"interrupted; go on with: magshell sweep --resume {folder.path}")
             return INTERRUPTED
+        except OSError:
+            complain(f"stopped; go on with: magshell sweep --resume {folder.path}")
+            raise
     why_not = draw_sweep(settings, cells, outcomes, folder.picture)
     say(out, f"no picture: {why_not}" if why_not else f"picture: {folder.picture}")
     failed = [cell for cell in cells if not outcomes[cell.number].converged]

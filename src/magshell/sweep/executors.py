@@ -6,10 +6,12 @@ process concerns only the cell that it was solving.
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import multiprocessing
 import os
 import pathlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from typing import Any, Protocol
 
@@ -94,6 +96,7 @@ class DaskWorkers:
     """
 
     def __init__(self, address: str, directory: str | os.PathLike[str]) -> None:
+        self._address = address
         try:
             import distributed
         except ImportError:
@@ -121,17 +124,27 @@ class DaskWorkers:
     @property
     def places(self) -> int:
         """As many as the workers have threads at the moment."""
-        return max(1, sum(self._client.nthreads().values()))
+        with self._there():
+            return max(1, sum(self._client.nthreads().values()))
 
     def submit(self, function: Function, *arguments: Any) -> Future[Any]:
         """Call a function on some worker."""
-        future: Future[Any] = self._executor.submit(function, *arguments)
+        with self._there():
+            future: Future[Any] = self._executor.submit(function, *arguments)
         return future
 
     def close(self) -> None:
         """Leave the cluster; what has not begun is dropped."""
         self._executor.shutdown(wait=False)
         self._client.close()
+
+    @contextlib.contextmanager
+    def _there(self) -> Iterator[None]:
+        """Of a scheduler that is gone Dask says so in many ways."""
+        try:
+            yield
+        except Exception as error:
+            raise ConnectionError(errno.ECONNRESET, "the scheduler does not answer any more", self._address) from error
 
 
 def _fault_here(directory: str) -> str:

@@ -138,5 +138,7 @@ def _outcome(future: Future[Outcome]) -> Outcome | None:
         return future.result()
     except BrokenExecutor:
         return None
-    except (CancelledError, Exception) as error:
-        return Outcome(False, f"its worker failed: {error or type(error).__name__}")
+    except CancelledError:
+        return Outcome(False, "the cluster has dropped it")
+    except Exception as error:
+        return Outcome(False, f"its worker failed: {str(error) or type(error).__name__}")
