@@ -159,6 +159,17 @@ def test_stable_path_speaks_of_no_unstable_state(path):
     assert "unstable" not in {line.get_label() for line in curve_figure(path).axes[0].lines}
 
 
+def test_curve_marks_critical_points(path):
+    path.critical_points = [path.steps[2]]
+    axes = curve_figure(path).axes[0]
+    diamonds = [line for line in axes.lines if line.get_marker() == "D" and len(line.get_xdata())]
+    u = [1e3 * path.steps[2].state.u[node, i] for node in path.model.probe_nodes.values() for i in range(3)]
+    assert len(diamonds) == 5, "one on each curve"
+    for line in diamonds:
+        assert line.get_xdata() == pytest.approx([20 * path.steps[2].load_factor])
+        assert np.abs(np.array(u) - line.get_ydata()).min() < 1e-12
+
+
 def test_curve_of_a_field_that_turns_has_the_load_parameter_below(path):
     field = UniformField((0.0, 0.0, 20e-3), history=(1, 1), rotation_axis=(0, 1, 0), rotation=(0, 1))
     path.model.field = field

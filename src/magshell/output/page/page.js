@@ -20,8 +20,9 @@ function startShape() {
   const edges = () => at("edges").checked;
   const rest = () => at("undeformed").checked;
   const behind = { nearer: 0, behind: true };
-  scene.faint = scene.addLines(() => ({ ...behind, width: 0.8, ink: channels("--pale", 0.4), shown: rest() && edges() }));
-  scene.rest = scene.addLines(() => ({ ...behind, width: 1.5, ink: channels("--pale", 1), shown: rest() }));
+  const pale = (opacity) => channels("--pale", opacity);
+  scene.faint = scene.addLines(() => ({ ...behind, width: 0.8, ink: pale(0.4), shown: rest() && edges() }));
+  scene.rest = scene.addLines(() => ({ ...behind, width: 1.5, ink: pale(1), shown: rest() }));
   scene.grid = scene.addLines(() => ({ width: 0.8, ink: channels("--line", 0.3), nearer: 2e-3, shown: edges() }));
   scene.rim = scene.addLines(() => ({ width: 1.5, ink: channels("--line", 1), nearer: 3e-3, shown: true }));
   scene.setInstances(scene.faint, "start", body.segments(body.reference, body.edges));
@@ -42,10 +43,12 @@ function showShape() {
   scene.fill(scene.surface, "normal", body.normals);
   scene.setInstances(scene.rim, "start", body.segments(nodal, body.outline));
   if (at("edges").checked) scene.setInstances(scene.grid, "start", body.segments(nodal, body.edges));
-  if (!at("arrows").checked) return;
-  const { arrows } = header;
-  const vectors = quantities.get(arrows.output).columns(state.step);
-  scene.setInstances(scene.arrow, "middle", body.arrows(vectors, arrows.most, arrows.length));
+  if (at("arrows").checked) {
+    const { output, most, length } = header.arrows;
+    const vectors = quantities.get(output).columns(state.step);
+    scene.setInstances(scene.arrow, "middle", body.arrows(vectors, most, length));
+  }
+  redraw();
 }
 
 function showColours() {
@@ -114,7 +117,8 @@ function showCompass() {
       svg(group, "path", { d: "M1,0L-7,3.4V-3.4Z", transform: `translate(${tip}) rotate(${turn})`, class: "head" });
     }
     const beyond = size > 4 ? 1 + 11 / size : 1;
-    svg(group, "text", { x: tip[0] * beyond + (size > 4 ? 0 : 9), y: tip[1] * beyond + 4, "text-anchor": "middle" }, text);
+    const place = { x: tip[0] * beyond + (size > 4 ? 0 : 9), y: tip[1] * beyond + 4 };
+    svg(group, "text", { ...place, "text-anchor": "middle" }, text);
   };
   const order = [0, 1, 2].sort((i, j) => axes[2][i] - axes[2][j]);
   for (const i of order) arrow([0, 1, 2].map((k) => +(k === i)), 34, "direction", "X" + "₁₂₃"[i]);
@@ -130,7 +134,8 @@ function go(step) {
   at("slider").value = state.step;
   at("step").textContent = `step ${about.number} of ${header.steps.at(-1).number}`;
   at("field").textContent = header.strongest > 0 ? `|B| = ${figures(about.magnitude * 1e3)} mT` : "no field";
-  at("load").textContent = (header.stages > 1 ? `stage ${about.stage}, ` : "") + `load factor ${figures(about.load_factor)}`;
+  const stage = header.stages > 1 ? `stage ${about.stage}, ` : "";
+  at("load").textContent = `${stage}load factor ${figures(about.load_factor)}`;
   at("unstable").hidden = !about.unstable;
   curves?.mark(state.step);
   showShape();
@@ -176,7 +181,7 @@ function choose() {
 function listen() {
   at("colour").addEventListener("change", () => { choose(); showColours(); });
   at("range").addEventListener("change", showColours);
-  for (const id of ["edges", "arrows", "undeformed"]) at(id).addEventListener("change", () => { showShape(); redraw(); });
+  for (const id of ["edges", "arrows", "undeformed"]) at(id).addEventListener("change", showShape);
   at("slider").addEventListener("input", () => { play(false); go(Number(at("slider").value)); });
   at("play").addEventListener("click", () => play(!playing));
   for (const button of document.querySelectorAll("#views button")) {
