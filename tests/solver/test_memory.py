@@ -82,8 +82,8 @@ def test_too_many_entries_for_superlu(problem, monkeypatch, capsys) -> None:
     monkeypatch.setattr("magshell.solver.memory.need_of", lambda model: Need(1e8, 1e6, 1e6))
     assert main(problem) == 2
     shown = capsys.readouterr()
-    assert "warning: the tangent has 1 million entries; SuperLU takes up to 0 million" in shown.out
-    assert 'SuperLU takes up to 0 million. Take fewer elements, or linear_solver = "pardiso"' in shown.err
+    assert "warning: the tangent has 1.0 million entries; SuperLU takes up to 0.0 million" in shown.out
+    assert 'SuperLU takes up to 0.0 million. Take fewer elements, or linear_solver = "pardiso"' in shown.err
 
 
 def test_no_memory(problem, monkeypatch, capsys) -> None:

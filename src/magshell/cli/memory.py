@@ -31,11 +31,11 @@ def say_memory(on: Console, problem: Problem) -> None:
         return
     need, free = need_of(problem.model), memory_free()
     if problem.settings.linear_solver == "superlu" and need.tangent > MOST_ENTRIES:
+        tangent, most = (f"{entries / 1e6:.1f} million" for entries in (need.tangent, MOST_ENTRIES))
         text = (
-            f"the tangent has {need.tangent / 1e6:.0f} million entries; SuperLU takes up to {MOST_ENTRIES / 1e6:.0f} "
+            f"the tangent has {tangent} entries; SuperLU takes up to {most}: the solve will fail; take fewer elements"
         )
-        text += 'million: the solve will fail; take fewer elements or solver.linear_solver = "pardiso"'
-        say(on, f"warning: {text}", style="yellow")
+        say(on, f'warning: {text} or solver.linear_solver = "pardiso"', style="yellow")
     line = f"memory: {memory_line(need.memory, free)}"
     if free is not None and need.memory > free:
         say(on, f"warning: {line}: the solve may be killed; take fewer elements or a larger machine", style="yellow")

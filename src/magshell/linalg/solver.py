@@ -131,8 +131,8 @@ class SuperLU(_Equilibrated):
             if self._matrix.nnz <= MOST_ENTRIES:
                 raise
             raise InputError(
-                f"solver: the tangent has {self._matrix.nnz / 1e6:.0f} million entries; SuperLU takes up to "
-                f'{MOST_ENTRIES / 1e6:.0f} million. Take fewer elements, or linear_solver = "pardiso" (an extra)'
+                f"solver: the tangent has {self._matrix.nnz / 1e6:.1f} million entries; SuperLU takes up to "
+                f'{MOST_ENTRIES / 1e6:.1f} million. Take fewer elements, or linear_solver = "pardiso" (an extra)'
             ) from None
 
     def negative_pivots(self) -> int | None:
