@@ -104,6 +104,12 @@ KEYS = st.one_of(
 )
 
 
+def of_a_setting(text: str) -> None:
+    assert text.startswith("--set")
+    assert text.isprintable(), repr(text)
+    assert len(text) < 300
+
+
 @share(0.06)
 @given(key=KEYS, words=st.lists(WORDS, min_size=1, max_size=8))
 def test_settings(key: str, words: list[str]) -> None:
@@ -113,12 +119,14 @@ def test_settings(key: str, words: list[str]) -> None:
         try:
             setting = read_setting(f"{key}={''.join(words)}")
         except InputError as error:
-            located(error, f"--set{str(error).removeprefix('--set').partition(':')[0]}")
+            of_a_setting(str(error))
             return
         try:
             cells = grid(Source("strip.toml", STRIP, Path()), [setting])
         except InputError as error:
-            if not str(error).startswith("--set"):
+            if str(error).startswith("--set"):
+                of_a_setting(str(error))
+            else:
                 located(error, "strip.toml")
             return
     assert len(cells) == len(setting.values)

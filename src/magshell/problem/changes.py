@@ -12,7 +12,7 @@ from typing import Any
 from magshell.errors import InputError
 from magshell.problem.alternatives import Value, value_of, written
 from magshell.problem.reading import Source, parse
-from magshell.units import FLUX_DENSITY, quoted
+from magshell.units import FLUX_DENSITY, quoted, shortened
 from magshell.units import parse as quantity
 
 VECTORS = ("flux_density", "vector", "total", "traction", "acceleration", "value")
@@ -54,7 +54,7 @@ def changed(source: Source, changes: Mapping[str, Value]) -> Source:
         try:
             put(data, key, value)
         except InputError as error:
-            raise InputError(f"{source.name}: {key}: {error}") from None
+            raise InputError(f"{source.name}: {shortened(key)}: {error}") from None
     if "field.stops" not in changes and any(key.startswith("field.") for key in changes):
         _leave_out_stops_beyond_the_end(data["field"])
     if changes and "title" not in changes and isinstance(data.get("title", ""), str):
@@ -64,7 +64,7 @@ def changed(source: Source, changes: Mapping[str, Value]) -> Source:
 
 def label(changes: Mapping[str, Value]) -> str:
     """The changes in words."""
-    return ", ".join(f"{key} = {value.text}" for key, value in changes.items())
+    return ", ".join(f"{shortened(key)} = {shortened(value.text)}" for key, value in changes.items())
 
 
 def put(data: dict[str, Any], key: str, value: Value) -> None:
@@ -94,14 +94,14 @@ def _place(data: dict[str, Any], key: str) -> tuple[Any, Any]:
                 has = f"has {len(holder)} entries" if isinstance(holder, list) else "is not a list"
                 raise InputError(f"there is no entry [{part}]: what it names {has} (the first is [0])")
         elif not isinstance(holder, dict):
-            raise InputError(f"there is no '{part}': what comes before it is not a table")
+            raise InputError(f"there is no '{shortened(part)}': what comes before it is not a table")
         else:
             part = _longest_name(holder, part, parts)
         if not parts:
             return holder, part
         if isinstance(holder, dict) and part not in holder:
             if isinstance(parts[0], int):
-                raise InputError(f"the file has no list '{part}'")
+                raise InputError(f"the file has no list '{shortened(str(part))}'")
             holder[part] = {}
         holder = holder[part]
 
