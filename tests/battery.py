@@ -2,7 +2,8 @@
 
 A law joins all tests here by being registered (`material_law`, `coupling_law`), and by having its reference formula in
 `materials/reference.py` or `magnetics/reference.py`; an element type by being in `magshell.shell.elements.ELEMENTS`.
-All laws meet one element type, all element types meet one pair of laws. Everything is of the order of one: elements of
+All laws meet one element type, all element types meet one pair of laws. The type for meshes with triangles is one of
+them: `for_element` gives it triangles. Everything is of the order of one: elements of
 unit size, a shear modulus and a permeability of one, so that figures of different kinds can be compared.
 """
 
@@ -19,7 +20,7 @@ from magshell import magnetics, materials
 from magshell.assembly import Discretisation
 from magshell.loading import Loading
 from magshell.magnetics import UniformField, remanence
-from magshell.mesh import Mesh, rectangle
+from magshell.mesh import Mesh, rectangle, split
 from magshell.model import Shell
 from magshell.shell.elements import ELEMENTS, QUADRATIC
 from magshell.shell.normals import nodal_normals
@@ -51,7 +52,10 @@ MATERIALS = [example(law) for law in materials.laws()]
 COUPLINGS = [example(law) for law in magnetics.laws()]
 MATERIAL, COUPLING = materials.MicropolarNeoHookean, magnetics.MicropolarCouple
 
-each_element = pytest.mark.parametrize("element", ELEMENTS.values(), ids=ELEMENTS)
+TRIANGULAR = QUADRATIC.with_triangles
+TYPES = ELEMENTS | {"triangles": TRIANGULAR}
+"""Element types by name, that of meshes with triangles among them."""
+each_element = pytest.mark.parametrize("element", TYPES.values(), ids=TYPES)
 each_material = pytest.mark.parametrize("material", MATERIALS, ids=name_of)
 each_coupling = pytest.mark.parametrize("coupling", COUPLINGS, ids=name_of)
 
@@ -71,9 +75,10 @@ each_pair = pytest.mark.parametrize(("material", "coupling"), PAIRS, ids=["-".jo
 def each_combination(function):
     """Run a test over every pair of laws with one element type, and over the other types with one pair."""
     cases = [(QUADRATIC, *pair) for pair in PAIRS]
-    others = [element for element in ELEMENTS.values() if element is not QUADRATIC]
+    others = [element for element in TYPES.values() if element is not QUADRATIC]
     cases += [(element, example(MATERIAL), example(COUPLING)) for element in others]
-    labels = [f"{element.name}-{name_of(material)}-{name_of(coupling)}" for element, material, coupling in cases]
+    named = {element: name for name, element in TYPES.items()}
+    labels = [f"{named[element]}-{name_of(material)}-{name_of(coupling)}" for element, material, coupling in cases]
     return pytest.mark.parametrize(("element", "material", "coupling"), cases, ids=labels)(function)
 
 
@@ -113,6 +118,17 @@ def patch(counts, distortion=0.0, surface=flat, keep_boundary=False, map_plane=N
 def with_points(mesh, points):
     """The same mesh at other places."""
     return Mesh(points, mesh.elements, mesh.element_groups, mesh.edge_groups, mesh.node_groups)
+
+
+def for_element(mesh, element):
+    """The mesh; with a type for triangles half of a single element, or of a patch every second one cut into four."""
+    if element.triangle_rule is None or mesh.triangles.any():
+        return mesh
+    if len(mesh.elements) > 1:
+        return split(mesh, "crossed", np.arange(0, len(mesh.elements), 2))
+    first = split(mesh, "rising").elements[0]
+    kept = np.unique(first)
+    return Mesh(split(mesh, "rising").points[kept], np.searchsorted(kept, first)[None])
 
 
 SINGLES = {
@@ -175,7 +191,11 @@ def free_body(
     loads=(),
     ordering=lambda graph: np.arange(graph.shape[0]),
 ):
-    """Discretisation of a mesh that only `supports` hold; `remanent` is a vector or one vector per element."""
+    """Discretisation of a mesh that only `supports` hold; `remanent` is a vector or one vector per element.
+
+    The mesh is `for_element`.
+    """
+    mesh = for_element(mesh, element)
     vectors = np.broadcast_to(np.asarray(remanent, dtype=float), (len(mesh.elements), 3))
     material, magnets = material or example(MATERIAL), remanence.per_element(vectors)
     shell = Shell(mesh, thickness, material, magnets, element, stretch)

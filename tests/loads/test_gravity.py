@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from battery import each_element
+from battery import each_element, for_element
 
 import magshell as ms
 from loads.cases import DENSITY, MESHES, applied, at_rest, each_patch, shell_of
@@ -51,6 +51,7 @@ def solid_volume(shell, elements):
 @each_element
 @each_patch
 def test_weight_is_that_of_the_solid(mesh, element):
+    mesh = for_element(mesh, element)
     shell = shell_of(mesh, element)
     for group in (None, "half"):
         elements = np.arange(len(mesh.elements)) if group is None else mesh.element_groups[group]
@@ -77,6 +78,7 @@ def test_thick_curved_bodies(body, element):
     errors = []
     for count in (4, 8):
         mesh, volume = body(count)
+        mesh = for_element(mesh, element)
         found = weight(shell_of(mesh, element, thickness=THICK)).sum(axis=0) @ G / (DENSITY * volume * G @ G)
         errors.append(abs(found - 1.0))
     assert errors[1] < 0.5 * errors[0], errors

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from battery import each_element
+from battery import each_element, for_element
 
 from loads.cases import CASES, MESHES, crumpled, each_case, each_patch, moved, on_mesh, product
 from magshell.nodal import COMPONENTS
@@ -26,6 +26,7 @@ def increment_of(mesh, seed):
 @each_case
 def test_tangent(case, mesh, element):
     """A step of 1e-4 leaves 1e-8 of truncation, times third derivatives of the order of one."""
+    mesh = for_element(mesh, element)
     load, state, increment = on_mesh(case, mesh, element), crumpled(mesh, 1), increment_of(mesh, 2)
     numeric = difference(load, state, increment, 1e-4)
     error = np.abs(numeric - product(load, state, increment)).max()

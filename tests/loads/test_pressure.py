@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from battery import each_element, with_points
+from battery import each_element, for_element, with_points
 
 import magshell as ms
 from loads.cases import applied, at_rest, crumpled, each_patch, moved, product, shell_of
@@ -74,6 +74,7 @@ def volume(mesh, element, state):
 @each_patch
 def test_resultants_are_those_of_the_rim(mesh, element):
     """∫ da = ½ ∮ x × dx and ∫ x × da = -½ ∮ x² dx hold for any surface on the rim, crumpled or not."""
+    mesh = for_element(mesh, element)
     state = crumpled(mesh, 1)
     x, F = mesh.points + state.u, pressure(mesh, element, "half").forces(state)
     assert not np.any(F[:, 3:])
@@ -88,7 +89,7 @@ def test_resultants_are_those_of_the_rim(mesh, element):
 @each_element
 def test_a_cylinder_and_its_lids(element):
     """A whole tube has two rims: the pressures on the lids through them balance the tube's, crumpled or not."""
-    mesh = whole(ms.mesh.cylinder(1.0, 1.5, (6, 2)))
+    mesh = for_element(whole(ms.mesh.cylinder(1.0, 1.5, (6, 2))), element)
     for state in (at_rest(mesh), crumpled(mesh, 2)):
         F = pressure(mesh, element).forces(state)[:, :3]
         area, moment = rim_integrals(mesh, mesh.points + state.u, "all")
@@ -100,6 +101,7 @@ def test_a_cylinder_and_its_lids(element):
 @each_element
 @each_closed
 def test_a_closed_surface_has_no_resultant(mesh, element):
+    mesh = for_element(mesh, element)
     load = pressure(mesh, element)
     assert load.conservative
     state = crumpled(mesh, 3)
@@ -119,6 +121,7 @@ def test_positive_pressure_pushes_along_the_director():
 @each_closed
 def test_the_potential_is_the_pressure_times_the_enclosed_volume(mesh, element):
     """The volume V is cubic in the positions: its difference along δ is 2 h V'δ + 2 h³ V(δ), exactly."""
+    mesh = for_element(mesh, element)
     step, load, state = 0.1, pressure(mesh, element), crumpled(mesh, 4)
     increment = np.random.default_rng(5).uniform(-1.0, 1.0, (len(mesh.points), COMPONENTS))
     ahead, behind = (volume(mesh, element, moved(state, sign * step * increment)) for sign in (1.0, -1.0))
@@ -136,7 +139,7 @@ def test_the_volume_of_the_ball(element):
     """
     counts, errors = (6, 12), []
     for count in counts:
-        mesh = ball(count)
+        mesh = for_element(ball(count), element)
         errors.append(1.0 - volume(mesh, element, at_rest(mesh)) / (4.0 / 3.0 * np.pi))
     order = np.log2(errors[0] / errors[1])
     # the next term is smaller by the square of an element's angle
@@ -156,14 +159,16 @@ def skew_part(mesh, load, state):
 @each_element
 @each_closed
 def test_symmetric_on_a_closed_surface(mesh, element):
+    """To the round-off of sums over 3 × 3 points, or with triangles 5 × 5, where derivatives are larger too."""
+    mesh = for_element(mesh, element)
     found = skew_part(mesh, pressure(mesh, element), crumpled(mesh, 6)).max()
-    assert found < 1e-15, f"{found:.1e}"
+    assert found < (5e-15 if mesh.triangles.any() else 1e-15), f"{found:.1e}"
 
 
 @each_element
 def test_symmetric_but_between_nodes_of_the_rim(element):
     """So also where the rim is held. Between its nodes it is not: such a load has no potential."""
-    mesh = whole(ms.mesh.cylinder(1.0, 1.5, (6, 3)))
+    mesh = for_element(whole(ms.mesh.cylinder(1.0, 1.5, (6, 3))), element)
     load = pressure(mesh, element)
     assert not load.conservative
     skew = skew_part(mesh, load, crumpled(mesh, 7))

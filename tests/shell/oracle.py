@@ -164,8 +164,29 @@ def eight_complete(parent, coordinates):
     return np.linalg.inv(span(*ring.T)) @ span(*parent)
 
 
+def is_triangle(coordinates):
+    """Whether corners 3 and 4 of (8, 3) are one."""
+    return bool(np.all(coordinates[2] == coordinates[3]))
+
+
+def areal(parent):
+    """Shares (1 - r - s, r, s) of the corners of a triangle at a point of the square whose upper side is one corner."""
+    r, s = 0.25 * (1 + parent[0]) * (1 - parent[1]), 0.5 * (1 + parent[1])
+    return np.array([1 - r - s, r, s])
+
+
+def six(parent):
+    """Functions that interpolate in the span of the quadratics in r and s, at a, b, c, c, ab, bc, c, ca; none twice."""
+    span = lambda r, s: np.array([1 + 0 * r, r, s, r * r, r * s, s * s])  # noqa: E731
+    nodes = np.array([[0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5]])
+    a, b, c, ab, bc, ca = np.linalg.inv(span(*nodes.T)) @ span(*areal(parent)[1:])
+    return np.array([a, b, c, 0 * c, ab, bc, 0 * c, ca])
+
+
 def functions(element, nodes, parent, coordinates):
     """Functions of a field on 4 or 8 nodes."""
+    if is_triangle(coordinates):
+        return six(parent) if nodes == 8 else np.array([*areal(parent), 0 * parent[0]])
     if nodes == 4:
         return four(parent)
     return eight_complete(parent, coordinates) if element.complete else eight(parent)
@@ -208,11 +229,13 @@ def surface(d, e, parent):
     )  # fmt: skip
 
 
-def enhancements(element, parent, here, centre):
+def enhancements(element, coordinates, parent, here, centre):
     """What each of the element's own vectors is multiplied with in g_1, g_2, g_3: (3, modes).
 
     F gains α ⊗ A^column of the centre, times a monomial ξ^a η^b less its mean over the square, which is
-    1/((a + 1)(b + 1)) where both are even, times a ratio of areas. The bubble is a part of u.
+    1/((a + 1)(b + 1)) where both are even, times a ratio of areas. The bubble is a part of u. On triangles F gains
+    α ⊗ ((3 s - 1) dr + (1 - 3 r) ds), which turns about r = s = 1/3, with dr and ds those of the square's centre: there
+    areal() has A_1 = X,r / 4 and A_2 = X,s / 2 - X,r / 4.
     """
     columns, length = np.zeros((3, element.vectors)), np.sqrt(centre.area)
     dual = np.linalg.pinv(centre.A).T
@@ -223,14 +246,36 @@ def enhancements(element, parent, here, centre):
             columns[2, number] = f
         else:
             columns[:2, number] = length * f * here.A @ dual[mode.column - 1]
+    triangle, at = is_triangle(coordinates), jets.variables(parent)
+    if element.triangle_rule is not None and triangle:
+        _, r, s = jets.value(areal(at))
+        dr, ds = np.linalg.pinv(np.array([4.0 * centre.A[0], 2.0 * (centre.A[0] + centre.A[1])])).T
+        ratio = centre.area * (1.0 - parent[1]) / here.area
+        columns[:2, len(element.modes)] = length * ratio * here.A @ ((3 * s - 1) * dr + (1 - 3 * r) * ds)
     if element.bubble:
-        at = jets.variables(parent)
-        columns[:2, -1] = length * ((1 - at[0] ** 2) * (1 - at[1] ** 2)).gradient
+        bubble = 27.0 * np.prod(areal(at)) if triangle else (1 - at[0] ** 2) * (1 - at[1] ** 2)
+        columns[:2, -1] = length * bubble.gradient
     return columns
+
+
+def points(d, e):
+    """Integration points of an element on the parent square, and their weights."""
+    element, coordinates = d.model.shell.element, d.mesh.points[d.mesh.elements[e]]
+    if not is_triangle(coordinates):
+        return list(zip(*element.rule, strict=True))
+    found = []
+    for heavy in range(3):
+        L = np.full(3, 1.0 / 6.0)
+        L[heavy] = 2.0 / 3.0
+        s = L[2]
+        found.append((np.array([(L[1] - L[0]) / (1.0 - s), 2.0 * s - 1.0]), (4.0 / 3.0) / (2.0 - 2.0 * s)))
+    return found
 
 
 def bubble_energy(d, state, e, at):
     """What holds the bubble: its vector α on the current tangents of the element's centre, and by itself.
+
+    Where there are triangles the vector before it too, on a triangle by the tangents only.
 
     mu h A/2 A^αβ (α·a_α)(α·a_β) + c mu h³/2 α·α with the area A of the parallelogram over the centre's tangents. In the
     dual base of the centre the first is mu h A/2 |A^α (α·a_α)|².
@@ -240,10 +285,14 @@ def bubble_energy(d, state, e, at):
     tangents = lambda x: 0.5 * np.array([x[5] - x[7], x[6] - x[4]])  # noqa: E731
     A = tangents(d.mesh.points[nodes])
     a = tangents(d.mesh.points[nodes] + state.u[nodes] + at[:NODAL].reshape(8, 10)[:, :3])
-    alpha = state.alpha[e, -1] + at[-3:]
-    held = np.linalg.pinv(A) @ (a @ alpha)
-    area = 4.0 * np.linalg.norm(np.cross(*A))
-    return 0.5 * mu * h * area * held @ held + 0.5 * shell.element.bubble * mu * h**3 * alpha @ alpha
+    area, total = 4.0 * np.linalg.norm(np.cross(*A)), 0.0
+    for number in range(1 + (shell.element.triangle_rule is not None)):
+        alpha = (state.alpha[e] + at[NODAL:].reshape(d.modes, 3))[-1 - number]
+        held = np.linalg.pinv(A) @ (a @ alpha)
+        total = total + 0.5 * mu * h * area * held @ held
+        if number == 0 or not is_triangle(d.mesh.points[nodes]):
+            total = total + 0.5 * shell.element.bubble * mu * h**3 * alpha @ alpha
+    return total
 
 
 def turned(spin, q):
@@ -270,7 +319,9 @@ def element_parts(d, state, e, parent, at):
     w_here, q_here = here.director @ w, here.rotation @ q
     enhanced = np.zeros((3, 3))
     if d.modes:
-        enhanced = enhancements(element, parent, here, centre) @ (state.alpha[e] + at[NODAL:].reshape(d.modes, 3))
+        enhanced = enhancements(element, d.mesh.points[nodes], parent, here, centre) @ (
+            state.alpha[e] + at[NODAL:].reshape(d.modes, 3)
+        )
     parts = {
         "du": here.u[1:] @ u + enhanced[:2],
         "w": w_here[0],
@@ -290,9 +341,9 @@ def point_of(d, here, e, weight, B):
 
 def element(d, state, e, B):
     """Strain energy, residual (n,), tangent (n, n) before condensation, in the chart exp(ϑ/2) q about the state."""
-    size, rule = unknowns(d), d.model.shell.element.rule
+    size = unknowns(d)
     strain, r, K = 0.0, np.zeros(size), np.zeros((size, size))
-    for parent, weight in zip(*rule, strict=True):
+    for parent, weight in points(d, e):
         f, here = element_parts(d, state, e, parent, jets.variables(np.zeros(size)))
         point = point_of(d, here, e, weight, B)
         energy, (g, H) = strain_energy(d.model.shell.material, f, point), magnetic_work(d.model.coupling, f, point)
@@ -307,9 +358,9 @@ def element(d, state, e, B):
 
 def stress_energy(d, state, e, dS, dκ):
     """½ ΔS : UᵀU + mu l² Δκ · κ of an element with fixed ΔS (points, levels, 3, 3) and Δκ (points, 2, 3)."""
-    material, rule = d.model.shell.material, d.model.shell.element.rule
+    material = d.model.shell.material
     modulus, total = material.shear_modulus * material.length_scale**2, 0.0
-    for p, (parent, weight) in enumerate(zip(*rule, strict=True)):
+    for p, (parent, weight) in enumerate(points(d, e)):
         f, here = element_parts(d, state, e, parent, jets.variables(np.zeros(unknowns(d))))
         point = point_of(d, here, e, weight, np.zeros(3))
         R, κ = rotation(f["q"]), wryness_vectors(f)
@@ -321,19 +372,19 @@ def stress_energy(d, state, e, dS, dκ):
     return total
 
 
-def condensed(r, K):
+def condensed(d, r, K):
     """Residual and tangent after the elimination of α, and (K_αα⁻¹ r_α, K_αα⁻¹ K_αv)."""
-    v, a = slice(0, NODAL), slice(NODAL, None)
+    v, a = slice(0, len(r) - 3 * d.modes), slice(len(r) - 3 * d.modes, None)
     solved = np.linalg.solve(K[a, a], np.column_stack([r[a], K[a, v]]))
     return r[v] - K[v, a] @ solved[:, 0], K[v, v] - K[v, a] @ solved[:, 1:], solved[:, 0], solved[:, 1:]
 
 
 def stresses(d, state, e, variation):
     """S = U⁻¹ P (points, levels, 3, 3) and κ (points, 2, 3) of an element, and derivatives along a variation (n,)."""
-    material, rule = d.model.shell.material, d.model.shell.element.rule
+    material = d.model.shell.material
     energy = material_reference.ENERGIES[type(material)]
     S, dS, κ, dκ = [], [], [], []
-    for parent, weight in zip(*rule, strict=True):
+    for parent, weight in points(d, e):
         f, here = element_parts(d, state, e, parent, jets.variables(np.zeros(unknowns(d))))
         for F in deformation_gradients(f, point_of(d, here, e, weight, np.zeros(3))):
             U = rotation(f["q"]).T @ F
@@ -345,5 +396,5 @@ def stresses(d, state, e, variation):
         vectors = wryness_vectors(f)
         κ.append(jets.value(vectors))
         dκ.append(jets.gradient(vectors) @ variation)
-    shape = (len(rule.weights), -1, 3, 3)
+    shape = (len(points(d, e)), -1, 3, 3)
     return np.reshape(S, shape), np.array(κ), np.reshape(dS, shape), np.array(dκ)

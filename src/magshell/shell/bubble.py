@@ -1,4 +1,4 @@
-r"""What holds the bubble of u by itself.
+r"""What holds the bubble of u, and the turning field of triangles, by themselves.
 
 Reduced integration does not see one combination of the bubble with ξ² and η², that of 3ξ²η² - ξ² - η²: its derivatives
 vanish at the 2 × 2 points. It is held by an energy of the bubble's vector α (times √A, the amplitude) on the current
@@ -9,6 +9,11 @@ tangents a_α at the element's centre,
 A the element's area, A^αβ the reference metric at the centre. In its plane the combination is as stiff as full
 integration makes it (mu h to five per cent), out of the plane of the order of bending: there a larger stiffness would
 bring back the locking that the bubble removes. W is objective, since α turns with the body, and vanishes with α.
+
+The vector of the turning field of triangles is held in its plane by the same k^αβ, with s = 0. Free there, it lets a
+mesh of triangles in rows have membrane modes that only the couple stress resists. Out of its plane it must be free: that
+is what keeps triangles from locking. (Beside triangles, quadrilaterals have that vector too, without functions: it is
+held with both, and stays zero.)
 
 With c_α = α · a_α and T^α = k^αβ c_β:
 
@@ -27,10 +32,11 @@ from magshell.compiled import inline
 from magshell.shell.element import Layout, place
 from magshell.shell.elements import ElementType
 from magshell.shell.shape_functions import serendipity
+from magshell.shell.triangle import collapsed
 
 
 class Hold(NamedTuple):
-    """What holds the bubbles; no elements where the element type has none.
+    """What holds vectors of the elements: that of the bubble, and before it that of the turning field, if there are any.
 
     Attributes
     ----------
@@ -38,16 +44,16 @@ class Hold(NamedTuple):
         Derivatives of the functions of u at the centre.
     A : ndarray, shape (elements, 2, 3)
         Reference tangents there, m.
-    k : ndarray, shape (elements, 2, 2)
-        N/m.
-    s : float
+    k : ndarray, shape (held, elements, 2, 2)
+        N/m, of the bubble first.
+    s : ndarray, shape (held, elements)
         N m.
     """
 
     du: FloatArray
     A: FloatArray
     k: FloatArray
-    s: float
+    s: FloatArray
 
 
 def hold(node_coordinates: FloatArray, element: ElementType, thickness: float, shear_modulus: float) -> Hold:
@@ -56,22 +62,35 @@ def hold(node_coordinates: FloatArray, element: ElementType, thickness: float, s
     A = np.einsum("an,enx->eax", du, node_coordinates)
     metric = np.einsum("eax,ebx->eab", A, A)
     area = 4.0 * np.sqrt(np.linalg.det(metric))
-    k = shear_modulus * thickness * area[:, None, None] * np.linalg.inv(metric)
+    plane = shear_modulus * thickness * area[:, None, None] * np.linalg.inv(metric)
+    bending = np.full(len(area), element.bubble * shear_modulus * thickness**3)
+    k, s = [plane], [bending]
+    if element.triangle_rule is not None:
+        k.append(plane)
+        s.append(np.where(collapsed(node_coordinates), 0.0, bending))
     count = len(k) if element.bubble else 0
-    return Hold(du, np.ascontiguousarray(A[:count]), k[:count].copy(), element.bubble * shear_modulus * thickness**3)
+    return Hold(
+        du,
+        np.ascontiguousarray(A),
+        np.array(k[:count]).reshape(-1, *plane.shape),
+        np.array(s[:count]).reshape(-1, len(area)),
+    )
 
 
 def held_energy(held: Hold, u: FloatArray, alpha: FloatArray) -> FloatArray:
     """W of each element (elements,), J, from u (elements, 8, 3) and α (elements, modes, 3)."""
-    if not len(held.k):
-        return np.zeros(len(u))
-    c = np.einsum("eax,ex->ea", held.A + np.einsum("an,enx->eax", held.du, u), alpha[:, -1])
-    return np.asarray(0.5 * np.einsum("eab,ea,eb->e", held.k, c, c) + 0.5 * held.s * np.sum(alpha[:, -1] ** 2, axis=1))
+    energy = np.zeros(len(u))
+    for number, (k, s) in enumerate(zip(held.k, held.s, strict=True)):
+        vector = alpha[:, -1 - number]
+        c = np.einsum("eax,ex->ea", held.A + np.einsum("an,enx->eax", held.du, u), vector)
+        energy += 0.5 * np.einsum("eab,ea,eb->e", k, c, c) + 0.5 * s * np.sum(vector**2, axis=1)
+    return energy
 
 
 @inline
-def hold_bubble(
+def hold_vector(
     held: Hold,
+    number: int,
     e: int,
     layout: Layout,
     v: FloatArray,
@@ -80,7 +99,7 @@ def hold_bubble(
     r: FloatArray,
     K: FloatArray,
 ) -> None:
-    """Add the gradient of W to r and its Hessian to K, for the element's values v and its vector α (3,)."""
+    """Add the gradient of W to r and its Hessian to K, for the element's values v and its held vector α (3,)."""
     a, c, T = vectors[:2], vectors[2], vectors[3]
     for b in range(2):
         c[b] = 0.0
@@ -91,12 +110,12 @@ def hold_bubble(
             a[b, i] = s
             c[b] += s * alpha[i]
     for b in range(2):
-        T[b] = held.k[e, b, 0] * c[0] + held.k[e, b, 1] * c[1]
-    last = place(10, 0, layout) + layout.modes - 1
+        T[b] = held.k[number, e, b, 0] * c[0] + held.k[number, e, b, 1] * c[1]
+    last = place(10, 0, layout) + layout.modes - 1 - number
     for i in range(3):
         row, at = last + i * layout.modes, place(i, 0, layout)
-        r[row] += T[0] * a[0, i] + T[1] * a[1, i] + held.s * alpha[i]
-        K[row, row] += held.s
+        r[row] += T[0] * a[0, i] + T[1] * a[1, i] + held.s[number, e] * alpha[i]
+        K[row, row] += held.s[number, e]
         for n in range(layout.u):
             d = T[0] * held.du[0, n] + T[1] * held.du[1, n]
             r[at + n] += d * alpha[i]
@@ -105,7 +124,7 @@ def hold_bubble(
         for j in range(3):
             at_j, h = place(j, 0, layout), 0.0
             for b in range(2):
-                ka = held.k[e, b, 0] * a[0, i] + held.k[e, b, 1] * a[1, i]
+                ka = held.k[number, e, b, 0] * a[0, i] + held.k[number, e, b, 1] * a[1, i]
                 h += ka * a[b, j]
                 for n in range(layout.u):
                     value = ka * held.du[b, n] * alpha[j]
@@ -114,7 +133,7 @@ def hold_bubble(
             K[row, last + j * layout.modes] += h
             product = alpha[i] * alpha[j]
             for n in range(layout.u):
-                k0 = held.du[0, n] * held.k[e, 0, 0] + held.du[1, n] * held.k[e, 1, 0]
-                k1 = held.du[0, n] * held.k[e, 0, 1] + held.du[1, n] * held.k[e, 1, 1]
+                k0 = held.du[0, n] * held.k[number, e, 0, 0] + held.du[1, n] * held.k[number, e, 1, 0]
+                k1 = held.du[0, n] * held.k[number, e, 0, 1] + held.du[1, n] * held.k[number, e, 1, 1]
                 for m in range(layout.u):
                     K[at + n, at_j + m] += product * (k0 * held.du[0, m] + k1 * held.du[1, m])

@@ -227,7 +227,7 @@ def condense(
     """Eliminate the unknowns from `size` on: Kᵀ and r condensed in place, Δα = -offset - gain Δv.
 
     Gauss–Jordan with pivoting on [K_αα | K_αv | r_α], in `factor`; False where K_αα is singular. The unknowns come in
-    vectors of three. Those without functions in this element, as quadrilaterals have beside triangles, stay zero.
+    vectors of three.
     """
     modes = Kt.shape[0] - size
     width = modes + size + 1
@@ -237,12 +237,6 @@ def condense(
         for j in range(size):
             factor[a, modes + j] = Kt[j, size + a]
         factor[a, modes + size] = r[size + a]
-    for a in range(modes):
-        size_of_row = 0.0
-        for b in range(modes):
-            size_of_row += abs(factor[a, b])
-        if size_of_row == 0.0:
-            factor[a, a] = 1.0
     for a in range(modes):
         pivot = a
         for b in range(a + 1, modes):

@@ -15,7 +15,7 @@ from magshell.compiled import Kernel, inline
 from magshell.magnetics.law import Coupling
 from magshell.materials.law import Material
 from magshell.nodal import COMPONENTS
-from magshell.shell.bubble import Hold, hold_bubble
+from magshell.shell.bubble import Hold, hold_vector
 from magshell.shell.element import (
     Layout,
     add_radial_force,
@@ -53,7 +53,7 @@ class Body(NamedTuple):
     plane_stress : bool
         Whether φ is eliminated at each point.
     hold : Hold
-        What holds the bubbles of u.
+        What holds the bubbles of u and the turning fields of triangles.
     """
 
     elements: IntArray
@@ -293,8 +293,8 @@ def assemble(
                 transpose(GH, HG)
                 contract(shape, e, p, layout, T, HG, scratch, Kt)
                 add_radial_force(shape, e, p, layout, g_mixed, v, radial)
-        if len(body.hold.k):
-            hold_bubble(body.hold, e, layout, v, state.alpha[e, modes - 1], vectors, r[:, 0], Kt)
+        for number in range(len(body.hold.k)):
+            hold_vector(body.hold, number, e, layout, v, state.alpha[e, modes - 1 - number], vectors, r[:, 0], Kt)
         for l in range(nodal):
             c = kind_of[l]
             kind = 0 if c < 3 else 1 if c < 6 else 2 if c == 6 else 3
