@@ -9,6 +9,7 @@ import pytest
 
 import magshell as ms
 from elements.linear import SMALL, respond, rubber
+from magshell.mesh import split
 from magshell.shell.elements import ELEMENTS, ElementType
 
 MU_0 = 4e-7 * np.pi
@@ -21,10 +22,11 @@ def orders(work: Callable[[int], float], elements: tuple[int, ...]) -> np.ndarra
     return np.log2(np.abs(changes[:-1] / changes[1:]))
 
 
-def wave(element: ElementType, elements: int, slenderness: float, nu: float) -> float:
+def wave(element: ElementType, elements: int, slenderness: float, nu: float, triangles: bool = False) -> float:
     """Work on a plate in plane strain, magnetised by half a wave, between planes of symmetry."""
     thickness = 1.0 / slenderness
-    mesh = ms.mesh.rectangle(1.0, 0.25, (elements, 1)).select_nodes("origin", x1=0)
+    mesh = ms.mesh.rectangle(1.0, 0.25, (elements, 1))
+    mesh = (split(mesh, "rising") if triangles else mesh).select_nodes("origin", x1=0)
     magnets = ms.remanence.function(lambda X: np.outer(np.sin(np.pi * X[:, 0]), [1.0, 0.0, 0.0]))
     shell = ms.Shell(mesh, thickness, rubber(nu, thickness), magnets, element)
     supports = [
@@ -52,11 +54,25 @@ def test_flat_and_nearly_incompressible(slenderness: float) -> None:
     assert found == pytest.approx(4.0, abs=0.2), f"order {found:.2f}"
 
 
-def tube(element: ElementType, elements: int, slenderness: float, nu: float = 0.45) -> float:
+@pytest.mark.parametrize("slenderness", [10, 1000])
+def test_flat_with_triangles(slenderness: float) -> None:
+    """The same order, or more where triangles across the wave add to the error of coarse meshes."""
+    found = orders(lambda n: wave(ELEMENTS["quadratic"], n, slenderness, 0.3, triangles=True), (4, 8, 16))[-1]
+    print(f"{found:.2f}")
+    assert found > 3.8, f"order {found:.2f}"
+
+
+def test_curved_with_triangles() -> None:
+    found = orders(lambda n: tube(ELEMENTS["quadratic"], n, 10, triangles=True), (8, 16, 32))[-1]
+    print(f"{found:.2f}")
+    assert found > 3.7, f"order {found:.2f}"
+
+
+def tube(element: ElementType, elements: int, slenderness: float, nu: float = 0.45, triangles: bool = False) -> float:
     """Work on half a ring in plane strain, magnetised along its circumference, between planes of symmetry."""
     thickness = 1.0 / slenderness
     mesh = ms.mesh.cylinder(1.0, 0.1, (elements, 1), angle=(-90, 90), axis=(0, 1, 0), zero=(1, 0, 0))
-    mesh = mesh.select_nodes("equator", x1=1.0, x3=0)
+    mesh = (split(mesh, "rising") if triangles else mesh).select_nodes("equator", x1=1.0, x3=0)
     magnets = ms.remanence.circumferential(1.0, axis=(0, 1, 0), towards=(0, 0, 1))
     shell = ms.Shell(mesh, thickness, rubber(nu, thickness), magnets, element)
     supports = [

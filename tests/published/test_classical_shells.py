@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from battery import PATCHES, Unsupported, each_mesh
+from battery import PATCHES, TRIANGULAR, Unsupported, each_mesh, for_element
 from scipy.spatial.transform import Rotation
 
 import magshell as ms
@@ -26,7 +26,7 @@ def free(mesh, thickness):
 
 
 @pytest.mark.parametrize("thickness", [0.15, 0.01])
-@each_mesh(PATCHES)
+@each_mesh(PATCHES | {"with triangles": lambda: for_element(PATCHES["curved patch"](), TRIANGULAR)})
 def test_a_patch_has_six_zero_modes(mesh, thickness):
     """(A lone flat element has two more, the membrane modes of reduced integration; no two elements can share them.)"""
     d = free(mesh, thickness)

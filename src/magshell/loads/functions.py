@@ -11,6 +11,8 @@ are the functions of a load. On a square c is 3/8 at the corners and -3/8 at mid
 1/12 and 1/6 of its total, in place of the -1/12 and 1/3 of N_I. (With the latter, the radius of a sphere under an even
 pressure, R/h = 100 and 48 elements in an octant, varies by 22 %; with N_I + c_I b, by 0.3 %.)
 
+(On triangles the `turning_field` changes next to nothing of this and is left out.)
+
 The functions add up to one, and on elements with straight sides they hold linear fields. On a curved element their
 surface lies within the bulge of the nodes', by a part of the rise of an arc over its chord.
 """

@@ -11,9 +11,9 @@ integration makes it (mu h to five per cent), out of the plane of the order of b
 bring back the locking that the bubble removes. W is objective, since α turns with the body, and vanishes with α.
 
 The vector of the turning field of triangles is held in its plane by the same k^αβ, with s = 0. Free there, it lets a
-mesh of triangles in rows have membrane modes that only the couple stress resists. Out of its plane it must be free: that
-is what keeps triangles from locking. (Beside triangles, quadrilaterals have that vector too, without functions: it is
-held with both, and stays zero.)
+mesh of triangles in rows have membrane modes that only the couple stress resists. Out of its plane it must be free:
+that is what keeps triangles from locking. (Beside triangles, quadrilaterals have that vector too, without functions: it
+is held with both, and stays zero.)
 
 With c_α = α · a_α and T^α = k^αβ c_β:
 
@@ -36,7 +36,7 @@ from magshell.shell.triangle import collapsed
 
 
 class Hold(NamedTuple):
-    """What holds vectors of the elements: that of the bubble, and before it that of the turning field, if there are any.
+    """What holds vectors of the elements: the bubble's, and before it that of the turning field, if there are any.
 
     Attributes
     ----------
