@@ -37,7 +37,7 @@ def angles(generator: str, name: str, value: Sequence[float], elements: int) -> 
         raise InputError(f"{generator}: {name} = {value!r} is not allowed; the start must be below the stop.")
     if stop - start > 360 and not whole_turn(start, stop):
         raise InputError(f"{generator}: {name} = {value!r} spans {stop - start:g} degrees; at most 360 are allowed.")
-    if stop - start > WIDEST * elements:
+    if stop - start > WIDEST * elements * (1.0 + 1e-12):
         raise InputError(
             f"{generator}: elements = {elements} over {name} = {value!r} makes elements of "
             f"{(stop - start) / elements:g} degrees; at most {WIDEST:g} are allowed, so give at least "
