@@ -5,7 +5,7 @@ from __future__ import annotations
 import pathlib
 from collections.abc import Mapping
 
-from magshell.output.files import write_atomically
+from magshell.files import write_atomically
 
 
 def filled(page: str, blocks: Mapping[str, str], command: str) -> str:

@@ -20,8 +20,8 @@ from matplotlib.figure import Figure
 
 import magshell as ms
 from magshell import problem
+from magshell.files import write_atomically
 from magshell.output.bodies import Body, cameras_for, step_at, turned
-from magshell.output.files import write_atomically
 from magshell.output.panels import colour_bar, colour_scale, draw_sequence, field_arrow
 from magshell.output.style import deliver
 from magshell.problem.schema import ProblemFile

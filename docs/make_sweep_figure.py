@@ -13,7 +13,7 @@ import tempfile
 from blocks import write_blocks
 
 from magshell.cli import main
-from magshell.output.files import write_atomically
+from magshell.files import write_atomically
 
 DOCS = pathlib.Path(__file__).parent
 COMMAND = "docs/make_sweep_figure.py"

@@ -11,7 +11,7 @@ import sys
 import tempfile
 
 from magshell.cli import main
-from magshell.output.files import write_atomically
+from magshell.files import write_atomically
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "tests" / "browser"))
 

@@ -14,8 +14,8 @@ import numpy as np
 
 import magshell as ms
 from magshell.assembly import Discretisation
+from magshell.files import write_atomically
 from magshell.linalg import make_solver, nested_dissection
-from magshell.output.files import write_atomically
 from magshell.solver.newton import StepFailure, System, Trial, newton
 from magshell.solver.path import Path
 

@@ -89,20 +89,14 @@ class Discretisation:
         element, thickness = model.shell.element, model.shell.thickness
         coordinates, normals = mesh.points[mesh.elements], model.normals[mesh.elements]
         shape = interpolation(coordinates, normals, element, model.shell.micro_rotation)
-        points, weights = element.integration(coordinates)
+        _, weights = element.integration(coordinates)
         geometry = section_geometry(coordinates, normals, shape, weights, thickness, LEVELS)
         _check_thickness(least_shifts(geometry, thickness))
-        functions = element.functions(8, points, coordinates)
-        positions = np.einsum("epn,enx->epx", functions.values, coordinates)
-        remanence = np.ascontiguousarray(model.shell.remanence(mesh, positions), dtype=float)
-        if not np.all(np.isfinite(remanence)):
-            bad = int(np.flatnonzero(~np.isfinite(remanence).all(axis=(1, 2)))[0])
-            raise InputError(f"remanence: it is not finite in element {bad}")
         self.modes = element.vectors
         held = hold(coordinates, element, thickness, model.shell.material.shear_modulus)
         layout = Layout(8, element.rest_nodes, element.stretch_nodes, shape.rotation.shape[-1], self.modes)
         self.body = loops.Body(
-            np.ascontiguousarray(mesh.elements), layout, geometry, shape, remanence,
+            np.ascontiguousarray(mesh.elements), layout, geometry, shape, model.shell.remanence_at_points,
             model.shell.thickness_stretch == "plane-stress", held,
         )  # fmt: skip
         self._number_equations(ordering)

@@ -120,6 +120,24 @@ class Shell:
     def __repr__(self) -> str:
         return f"Shell({self.mesh!r}, thickness {self.thickness:g} m, {self.material!r}, element '{self.element.name}')"
 
+    @cached_property
+    def remanence_at_points(self) -> FloatArray:
+        """Remanence at the integration points, (elements, points, 3), T.
+
+        Raises
+        ------
+        InputError
+            It is not finite in an element.
+        """
+        coordinates = self.mesh.points[self.mesh.elements]
+        points, _ = self.element.integration(coordinates)
+        positions = np.einsum("epn,enx->epx", self.element.functions(8, points, coordinates).values, coordinates)
+        remanence = np.ascontiguousarray(self.remanence(self.mesh, positions), dtype=float)
+        bad = np.flatnonzero(~np.isfinite(remanence).all(axis=(1, 2)))
+        if bad.size:
+            raise InputError(f"remanence: it is not finite in element {bad[0]}")
+        return remanence
+
     @property
     def carriers(self) -> dict[str, AnyArray]:
         """Which nodes carry the fields u, w, phi and omega: boolean arrays (nodes,)."""
@@ -241,13 +259,12 @@ class Model:
         )
 
     def _check_something_loads(self) -> None:
-        mesh = self.shell.mesh
         if any(np.any(amounts.held) or np.any(amounts.loads) for amounts in self._ends):
             return
         otherwise = "and no support moves, nor is there a load: nothing loads the shell"
         if not any(amounts.field * self.field.magnitude for amounts in self._ends):
             raise NothingLoads(f"field: flux_density is zero {otherwise}")
-        if not np.any(self.shell.remanence(mesh, mesh.points[mesh.elements])):
+        if not np.any(self.shell.remanence_at_points):
             raise NothingLoads(f"remanence: it is zero everywhere {otherwise}")
 
     def _forces_at_rest(self) -> list[FloatArray]:

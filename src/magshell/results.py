@@ -13,10 +13,10 @@ from dataclasses import dataclass
 
 from magshell import __version__, problem
 from magshell.errors import InputError
+from magshell.files import naming, write_atomically
 from magshell.output import checkpoint
 from magshell.output.checkpoint import CheckpointWriter, Origin
 from magshell.output.critical import CriticalWriter
-from magshell.output.files import naming, write_atomically
 from magshell.output.history import HistoryWriter
 from magshell.output.summary import SummaryWriter
 from magshell.output.vtu import VtuWriter

@@ -1,4 +1,4 @@
-"""The whole way of a person: a drawing, a mesh, a check, a look, a run that is killed and goes on, a page in a browser."""
+"""The whole way of a person: a drawing, a mesh, a check, a look, a run that is killed and goes on, a page."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from browser.chromium import browser, missing
 from PIL import Image
 
-from browser.chromium import browser, missing
 from magshell.output.rendering import RenderingUnavailable, require_rendering
 
 DRAWING = Path(__file__).with_name("tongue.geo")

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from battery import free_body, patch
 
+import magshell as ms
 from magshell.errors import InputError
 from magshell.magnetics import remanence
 from magshell.mesh import blocks
@@ -126,3 +127,13 @@ def test_remanence_that_is_not_finite_names_the_element():
     values[1, 2] = np.nan
     with pytest.raises(InputError, match="not finite in element 1"):
         free_body(patch((2, 1)), remanent=values)
+
+
+def test_a_disc_may_have_a_node_on_the_axis():
+    """A remanence is asked for at integration points, none of which lies there."""
+    disc = ms.mesh.rectangle(2.0, 2.0, (2, 2))
+    disc = ms.mesh.Mesh(disc.points - [1.0, 1.0, 0.0], disc.elements, disc.element_groups, disc.edge_groups)
+    rubber = ms.MicropolarNeoHookean(shear_modulus=1e5, lame_lambda=1e6, coupling_modulus=1e4, length_scale=1e-2)
+    shell = ms.Shell(disc, 0.1, rubber, remanence.radial(0.1))
+    model = ms.Model(shell, [ms.Clamp("left")], ms.UniformField([0, 0, 1e-3]))
+    assert np.linalg.norm(model.shell.remanence_at_points, axis=-1) == pytest.approx(0.1)

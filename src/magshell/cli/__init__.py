@@ -71,6 +71,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         complain(f"{error.filename or 'a file'}: {error.strerror or error}")
         return NOT_SOLVED
+    except MemoryError:
+        complain("the memory of this machine does not suffice; fewer elements need less")
+        return NOT_SOLVED
     except Exception as error:
         if given.debug:
             raise

@@ -57,7 +57,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """Solve, and write the results."""
-    from magshell.output.files import remove_temporaries
+    from magshell.files import remove_temporaries
     from magshell.output.lock import alone
 
     if given.resume is not None:

@@ -18,7 +18,7 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
-from magshell.output.files import write_atomically
+from magshell.files import write_atomically
 from magshell.output.labels import bar_title
 from magshell.output.registry import find
 from magshell.output.scene import Camera, best_axes, darkroom, deformed, field_arrow, fit, lettered

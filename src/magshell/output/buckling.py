@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from magshell.files import csv_line, write_atomically
 from magshell.output.critical import write_mode
-from magshell.output.files import csv_line, write_atomically
 from magshell.output.rendering import RenderingUnavailable
 from magshell.output.shape import draw_shape
 from magshell.solver.path import Step

@@ -22,7 +22,7 @@ import numpy as np
 
 import magshell
 from magshell.errors import InputError
-from magshell.output.files import naming, write_atomically
+from magshell.files import naming, write_atomically
 from magshell.shell.state import State
 from magshell.solver.balance import Balance
 from magshell.solver.critical import CriticalPoint

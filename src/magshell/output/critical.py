@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from magshell.files import append_line, csv_line, naming, write_atomically
 from magshell.nodal import COLUMNS
-from magshell.output.files import append_line, csv_line, naming, write_atomically
 from magshell.output.vtu import grid, vtu
 from magshell.solver.events import Observer
 

@@ -6,7 +6,7 @@ import os
 import pathlib
 from typing import TYPE_CHECKING
 
-from magshell.output.files import append_line, csv_line, write_atomically
+from magshell.files import append_line, csv_line, write_atomically
 from magshell.solver.events import Observer
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from typing import IO
 
 from magshell.errors import InputError
-from magshell.output.files import naming
+from magshell.files import naming
 
 NAME = ".lock"
 

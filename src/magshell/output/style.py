@@ -7,7 +7,7 @@ import os
 import pathlib
 from typing import TYPE_CHECKING, Any
 
-from magshell.output.files import write_atomically
+from magshell.files import write_atomically
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from magshell.output.files import naming, write_atomically
+from magshell.files import naming, write_atomically
 from magshell.solver.events import Observer
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from magshell.output.files import naming, write_atomically
+from magshell.files import naming, write_atomically
 from magshell.output.registry import OUTPUTS
 from magshell.shell.triangle import REPEATED, SLOTS
 from magshell.solver.events import Observer

@@ -8,7 +8,7 @@ import pathlib
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from magshell.output.files import write_atomically
+from magshell.files import write_atomically
 from magshell.reproduction.catalogue import Example
 from magshell.reproduction.table import WORTH_A_NOTE, Row
 

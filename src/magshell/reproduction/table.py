@@ -8,7 +8,7 @@ import pathlib
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from magshell.output.files import write_atomically
+from magshell.files import write_atomically
 
 COLUMNS = ("example", "quantity", "unit", "paper", "computed", "difference_percent", "note")
 WORTH_A_NOTE = 1.0

@@ -65,7 +65,7 @@ def solve_cell(name: str, text: str, folder: str, directory: str, stop: str) -> 
 def _solve(source: Source, directory: pathlib.Path, stop: Observer) -> None:
     """From the last converged step in the folder, if there is one that can be read."""
     from magshell import results
-    from magshell.output.files import remove_temporaries
+    from magshell.files import remove_temporaries
     from magshell.output.lock import alone
     from magshell.output.summary import write_summary
     from magshell.problem.building import build

@@ -12,7 +12,7 @@ import tomllib
 from collections.abc import Sequence
 
 from magshell.errors import InputError
-from magshell.output.files import write_atomically
+from magshell.files import write_atomically
 from magshell.problem.reading import Source
 
 _VERSION = 1

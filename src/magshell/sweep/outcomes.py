@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from magshell.output.files import csv_line, write_atomically
+from magshell.files import csv_line, write_atomically
 from magshell.problem.alternatives import Setting, Value
 from magshell.sweep.grid import Cell
 

@@ -33,7 +33,7 @@ def write(mesh: Mesh, file: str | os.PathLike[str], unit: str = "m") -> None:
     OSError
         The disk refuses; the message names the file.
     """
-    from magshell.output.files import write_atomically
+    from magshell.files import write_atomically
 
     write_atomically(pathlib.Path(file), msh(mesh, unit))
 

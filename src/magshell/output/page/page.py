@@ -13,7 +13,7 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 from magshell.errors import InputError
-from magshell.output.files import write_atomically
+from magshell.files import write_atomically
 from magshell.output.page.data import collect
 from magshell.output.page.facts import Facts, facts
 

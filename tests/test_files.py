@@ -6,7 +6,7 @@ import errno
 
 import pytest
 
-from magshell.output.files import append_line, write_atomically
+from magshell.files import append_line, write_atomically
 
 
 @pytest.fixture
