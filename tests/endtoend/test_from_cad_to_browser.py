@@ -57,7 +57,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_the_whole_way(folder: Path) -> None:
     pytest.importorskip("gmsh", reason="gmsh is not installed", exc_type=(ImportError, OSError))
-    said = magshell(folder, "mesh", DRAWING.name, "--unit", "mm", "--size", "1 mm", "--out", "tongue.msh")
+    said = magshell(folder, "mesh", DRAWING.name, "--unit", "mm", "--size", "1.2 mm", "--out", "tongue.msh")
     assert "quadrilaterals" in said
     assert "root" in said
 

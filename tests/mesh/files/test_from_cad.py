@@ -19,6 +19,7 @@ from .same import described
 
 DATA = pathlib.Path(__file__).parent / "data"
 FLOWER = pathlib.Path(__file__).parents[3] / "docs" / "meshes" / "flower.geo"
+TONGUE = pathlib.Path(__file__).parents[2] / "endtoend" / "tongue.geo"
 needs_gmsh = pytest.mark.skipif(importlib.util.find_spec("gmsh") is None, reason="needs the extra magshell[gmsh]")
 
 
@@ -202,3 +203,16 @@ def test_without_gmsh(monkeypatch):
 def test_a_geometry_is_not_read_as_a_mesh():
     with pytest.raises(InputError, match=r"flower.geo: is a geometry, not a mesh. Mesh it first: magshell mesh"):
         ms.mesh.read(FLOWER, unit="mm")
+
+
+@needs_gmsh
+@pytest.mark.parametrize("size", [0.8e-3, 1.2e-3, 1.6e-3])
+def test_a_round_tip_has_no_bad_corners(size):
+    """Where a quadrilateral would fill half a turn of a smooth boundary, two triangles do."""
+    tongue = ms.mesh.from_cad(TONGUE, size=size, unit="mm")
+    corner = worst(tongue)["scaled_jacobian"]
+    print(f"{len(tongue.elements)} elements, {tongue.triangles.sum()} triangles, worst corner {corner.value:.3f}")
+    assert corner.value > 0.3
+    assert tongue.triangles.mean() < 0.2
+    cut = [change for change in tongue.origin.changes if "cut into triangles" in change]
+    assert bool(cut) == tongue.triangles.any()

@@ -14,6 +14,7 @@ import numpy as np
 from magshell.errors import InputError
 from magshell.mesh.files.assembling import FileMesh, assemble
 from magshell.mesh.files.contents import GROUPED
+from magshell.mesh.files.cutting import with_bad_ones_cut
 from magshell.mesh.files.from_gmsh import contents_of
 from magshell.mesh.files.paths import GEOMETRY, readable, textual
 from magshell.mesh.files.session import installed, quiet, session
@@ -33,11 +34,7 @@ DEFAULT_ELEMENTS = 800
 """About as many elements does a mesh have whose size nobody said."""
 MOST_ELEMENTS = 1_000_000
 GOOD = 0.3
-"""Worst scaled Jacobian with which the first mesh is taken."""
-USABLE = 0.05
-"""Below this a mesh of quadrilaterals is worse than one of triangles."""
-
-
+"""Worst scaled Jacobian with which the first mesh is taken; quadrilaterals with a worse one are cut."""
 NO_SIZE = 1e21
 """Mesh.MeshSizeMax where no file has set it is larger than this."""
 
@@ -73,8 +70,8 @@ class Candidate(NamedTuple):
     """Least scaled Jacobian."""
 
     @property
-    def rank(self) -> tuple[bool, bool, float]:
-        return self.worst >= USABLE, self.triangles in (0, len(self.mesh.elements)), self.worst
+    def rank(self) -> tuple[float, float, float]:
+        return min(self.worst, GOOD), -self.triangles / len(self.mesh.elements), self.worst
 
     @property
     def good(self) -> bool:
@@ -85,7 +82,8 @@ def from_cad(file: str | os.PathLike[str], size: float | None = None, unit: str 
     """Mesh a geometry with gmsh (the extra `magshell[gmsh]`).
 
     Several of gmsh's algorithms are tried until one gives quadrilaterals only, without a bad corner; else the best is
-    taken, which may have triangles. The nodes, mid-sides too, lie on the surfaces and curves of the geometry.
+    taken, in which bad quadrilaterals are cut into triangles. The nodes, mid-sides too, lie on the surfaces and curves
+    of the geometry.
 
     Parameters
     ----------
@@ -241,7 +239,7 @@ def _best(gmsh: Any, name: str, unit: str, attempts: tuple[Attempt, ...]) -> Fil
     best: Candidate | None = None
     reason = f"{name}: gmsh makes no elements of it"
     for attempt in attempts:
-        if best is not None and (best.good or (best.worst >= USABLE and not attempt.recombine)):
+        if best is not None and (best.good or (best.worst >= GOOD and not attempt.recombine)):
             break
         try:
             candidate = meshed(gmsh, name, unit, attempt)
@@ -271,7 +269,7 @@ def meshed(gmsh: Any, name: str, unit: str, attempt: Attempt) -> Candidate:
     if name.lower().endswith(IGES):
         gmsh.model.mesh.removeDuplicateNodes()
     _put_on_surfaces(gmsh)
-    mesh = assemble(contents_of(gmsh, name), name, unit, second_order=False)
+    mesh = with_bad_ones_cut(assemble(contents_of(gmsh, name), name, unit, second_order=False), GOOD)
     triangles = int(mesh.triangles.sum())
     return Candidate(mesh, triangles, worst(mesh)["scaled_jacobian"].value)
 
