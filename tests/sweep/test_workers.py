@@ -167,7 +167,7 @@ def test_a_dask_scheduler_that_goes_away(cluster: str, tmp_path: Path, monkeypat
         raise RuntimeError("closed")
 
     workers = DaskWorkers(cluster, tmp_path)
-    assert workers.places == 2
+    assert workers.places in (1, 2), "one may not be there yet again after the kill"
     monkeypatch.setattr(workers._client, "nthreads", gone)
     with pytest.raises(ConnectionError, match="the scheduler does not answer any more") as error:
         _ = workers.places
