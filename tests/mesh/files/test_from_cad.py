@@ -6,6 +6,8 @@ import builtins
 import importlib.util
 import pathlib
 import signal
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -216,3 +218,14 @@ def test_a_round_tip_has_no_bad_corners(size):
     assert tongue.triangles.mean() < 0.2
     cut = [change for change in tongue.origin.changes if "cut into triangles" in change]
     assert bool(cut) == tongue.triangles.any()
+
+
+@needs_gmsh
+def test_a_broken_pipe_is_still_an_exception_afterwards():
+    """gmsh has the system end a process that writes where nobody reads; Python's processes raise."""
+    code = (
+        f"import os, magshell as ms\nms.mesh.from_cad({str(TONGUE)!r}, size=2e-3, unit='mm')\n"
+        "end, begin = os.pipe()\nos.close(end)\ntry:\n    os.write(begin, b'x')\nexcept BrokenPipeError:\n    print('alive')"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (0, "alive\n"), done.stderr

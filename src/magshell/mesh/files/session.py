@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 import re
+import signal
 import sys
 import tempfile
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
@@ -43,6 +45,7 @@ def session(name: str) -> Iterator[Any]:
         raise InputError(f"{name}: gmsh is in use in this process; end that use first with gmsh.finalize()")
     with quiet():
         gmsh.initialize(readConfigFiles=False, interruptible=False)
+    _ignore_broken_pipes()
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         yield gmsh
@@ -53,6 +56,12 @@ def session(name: str) -> Iterator[Any]:
         raise InputError(f"{name}: gmsh cannot do it: {_bearable(reason)}") from None
     finally:
         gmsh.finalize()
+
+
+def _ignore_broken_pipes() -> None:
+    """As Python does: gmsh lets a pipe that nobody reads from any more end the process."""
+    if hasattr(signal, "SIGPIPE") and threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGPIPE, signal.getsignal(signal.SIGPIPE))
 
 
 def _bearable(text: str) -> str:
