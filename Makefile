@@ -11,7 +11,7 @@ demo: $(VENV)/installed
 	$(BIN)/magshell run gripper --out results/gripper
 
 test: lint
-	$(BIN)/pytest -n 2 --dist loadfile
+	$(BIN)/pytest -n 3 --dist loadfile
 
 lint: $(VENV)/installed-dev
 	$(BIN)/ruff check .

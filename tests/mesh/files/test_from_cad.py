@@ -225,7 +225,8 @@ def test_a_broken_pipe_is_still_an_exception_afterwards():
     """gmsh has the system end a process that writes where nobody reads; Python's processes raise."""
     code = (
         f"import os, magshell as ms\nms.mesh.from_cad({str(TONGUE)!r}, size=2e-3, unit='mm')\n"
-        "end, begin = os.pipe()\nos.close(end)\ntry:\n    os.write(begin, b'x')\nexcept BrokenPipeError:\n    print('alive')"
+        "end, begin = os.pipe()\nos.close(end)\n"
+        "try:\n    os.write(begin, b'x')\nexcept BrokenPipeError:\n    print('alive')"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout) == (0, "alive\n"), done.stderr
