@@ -5,13 +5,18 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test lint docs figures verify clean
+.PHONY: demo test lint kernels docs figures verify clean
 
 demo: $(VENV)/installed
 	$(BIN)/magshell run gripper --out results/gripper
 
-test: lint
+test: $(VENV)/installed-dev
+	$(MAKE) -j 2 lint kernels
 	$(BIN)/pytest -n 3 --dist loadfile
+
+# Compiled once, before three processes want them.
+kernels: $(VENV)/installed-dev
+	$(BIN)/magshell run strip-10 --out $(VENV)/strip-10 >/dev/null
 
 lint: $(VENV)/installed-dev
 	$(BIN)/ruff check .

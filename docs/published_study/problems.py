@@ -142,7 +142,7 @@ PROBLEMS = [
     Published(
         "cantilever-moment", "cantilever, moment", "cantilever_end_moment.csv",
         [Column("minus_u_tip", "tip", 1, -1.0), Column("w_tip", "tip", 3, 1.0)],
-        meshes(1, 0, (4, 8, 16, 32), (8, 16, 32), (12, 16, 32)), length_scale=0.1,
+        meshes(1, 0, (4, 8, 16, 24), (8, 16, 24), (12, 16, 24)), length_scale=0.1,
     ),
     Published(
         "slit-annulus", "slit annulus", "slit_annulus.csv",
