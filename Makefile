@@ -5,18 +5,13 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test lint kernels docs figures verify clean
+.PHONY: demo test lint docs figures verify clean
 
 demo: $(VENV)/installed
 	$(BIN)/magshell run gripper --out results/gripper
 
-test: $(VENV)/installed-dev
-	$(MAKE) -j 2 lint kernels
+test: lint
 	$(BIN)/pytest -n 3 --dist loadfile
-
-# Compiled once, before three processes want them.
-kernels: $(VENV)/installed-dev
-	$(BIN)/magshell run strip-10 --out $(VENV)/strip-10 >/dev/null
 
 lint: $(VENV)/installed-dev
 	$(BIN)/ruff check .
@@ -41,11 +36,12 @@ verify: $(VENV)/installed-dev
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet --editable .
+	$(BIN)/pip install --quiet --no-compile --editable .
 	touch $@
 
-$(VENV)/installed-dev: $(VENV)/installed
-	$(BIN)/pip install --quiet --editable ".[dev]"
+$(VENV)/installed-dev: pyproject.toml
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install --quiet --no-compile --editable ".[dev]"
 	touch $@
 
 clean:

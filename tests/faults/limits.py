@@ -16,7 +16,7 @@ from hypothesis import HealthCheck, settings
 
 MUTATIONS = int(os.environ.get("MAGSHELL_MUTATIONS", "0"))
 """In all, as `make verify` asks for; 0: the few hundred of `make test`, each time the same."""
-FEW = 300
+FEW = 200
 SECONDS = 20.0
 MEMORY = 4 << 30
 
