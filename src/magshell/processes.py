@@ -45,6 +45,12 @@ def single_threaded() -> Iterator[None]:
                 os.environ[name] = value
 
 
+def let_broken_pipes_raise() -> None:
+    """As in every process of Python; gmsh has them end the process, silently."""
+    if hasattr(signal, "SIGPIPE") and threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGPIPE, signal.SIG_IGN)
+
+
 def work_for_the_parent() -> None:
     """In a process: leave Ctrl-C to the parent, and end when the parent has ended, however it did."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -16,7 +16,7 @@ from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExec
 from typing import Any, Protocol
 
 from magshell.errors import InputError
-from magshell.processes import interrupts_wait, single_threaded, work_for_the_parent
+from magshell.processes import interrupts_wait, let_broken_pipes_raise, single_threaded, work_for_the_parent
 
 PATIENCE = "10s"
 """For the scheduler of a cluster to answer."""
@@ -47,6 +47,7 @@ class LocalWorkers:
     """
 
     def __init__(self, places: int) -> None:
+        let_broken_pipes_raise()
         self.places = places
         self._context = multiprocessing.get_context("spawn")
         self._free: list[Executor] = []

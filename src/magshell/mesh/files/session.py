@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import os
 import re
-import signal
 import sys
 import tempfile
-import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
 from typing import Any
 
 from magshell.errors import InputError
+from magshell.processes import let_broken_pipes_raise
 from magshell.units import shortened
 
 DEBIAN = "libglu1-mesa libgl1 libxcursor1 libxfixes3 libxft2 libxinerama1 libxrender1 libfontconfig1"
@@ -45,7 +44,7 @@ def session(name: str) -> Iterator[Any]:
         raise InputError(f"{name}: gmsh is in use in this process; end that use first with gmsh.finalize()")
     with quiet():
         gmsh.initialize(readConfigFiles=False, interruptible=False)
-    _ignore_broken_pipes()
+    let_broken_pipes_raise()
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         yield gmsh
@@ -56,12 +55,6 @@ def session(name: str) -> Iterator[Any]:
         raise InputError(f"{name}: gmsh cannot do it: {_bearable(reason)}") from None
     finally:
         gmsh.finalize()
-
-
-def _ignore_broken_pipes() -> None:
-    """As Python does: gmsh lets a pipe that nobody reads from any more end the process."""
-    if hasattr(signal, "SIGPIPE") and threading.current_thread() is threading.main_thread():
-        signal.signal(signal.SIGPIPE, signal.getsignal(signal.SIGPIPE))
 
 
 def _bearable(text: str) -> str:
