@@ -37,6 +37,7 @@ examples:
   magshell mesh part.step --size "0.5 mm" mesh a geometry, or say what a mesh file holds
   magshell view results                   the results as a page for a browser
   magshell plot results --animate shape.gif
+  magshell sweep strip-10 --set shell.thickness="0.8,1.1 mm" --out sweep
   magshell buckling my-plate.toml --out results
   magshell reproduce --out reproduction   the source paper's examples beside what it says
 

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
+from magshell.files import write_atomically
 from magshell.mesh.edges import edge_keys
 from magshell.mesh.files.units import length_unit
 from magshell.mesh.mesh import Mesh
@@ -33,8 +34,6 @@ def write(mesh: Mesh, file: str | os.PathLike[str], unit: str = "m") -> None:
     OSError
         The disk refuses; the message names the file.
     """
-    from magshell.files import write_atomically
-
     write_atomically(pathlib.Path(file), msh(mesh, unit))
 
 
