@@ -15,8 +15,19 @@ import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
+
+from magshell.output.checkpoint import step_files
 
 TESTS = Path(__file__).parents[1]
+
+
+class Kill(NamedTuple):
+    """When a run is sent SIGKILL, unless it has ended: so long after its folder has so many steps."""
+
+    folder: str
+    steps: int
+    seconds: float
 
 
 class Forks:
@@ -34,11 +45,11 @@ class Forks:
         self._parent.stdin.close()
         self._parent.wait(timeout=60)
 
-    def run(self, arguments: Sequence[str], shown: Path, killed_after: float | None = None) -> int:
+    def run(self, arguments: Sequence[str], shown: Path, kill: Kill | None = None) -> int:
         """Exit status of `magshell ARGUMENTS`, or minus the signal that ended it; what it says goes into a file."""
         assert self._parent.stdin is not None
         assert self._parent.stdout is not None
-        self._parent.stdin.write(json.dumps([list(arguments), str(shown), killed_after]) + "\n")
+        self._parent.stdin.write(json.dumps([list(arguments), str(shown), kill]) + "\n")
         self._parent.stdin.flush()
         answer = self._parent.stdout.readline()
         assert answer, f"the parent of the runs has ended with {self._parent.wait(timeout=60)}"
@@ -48,23 +59,27 @@ class Forks:
 def _serve() -> None:
     _warm_up()
     for line in sys.stdin:
-        arguments, shown, killed_after = json.loads(line)
+        arguments, shown, kill = json.loads(line)
         child = os.fork()
         if child == 0:
             _be_a_run(arguments, shown)
-        if killed_after is not None:
-            _wait(child, killed_after)
+        print(_end(child, Kill(*kill) if kill else None), flush=True)
+
+
+def _end(child: int, kill: Kill | None) -> int:
+    """Wait for the end of a process, or bring it about."""
+    due = None
+    while kill is not None:
+        ended, status = os.waitpid(child, os.WNOHANG)
+        if ended:
+            return os.waitstatus_to_exitcode(status)
+        if due is None and len(step_files(kill.folder)) >= kill.steps:
+            due = time.monotonic() + kill.seconds
+        if due is not None and time.monotonic() >= due:
             os.kill(child, signal.SIGKILL)
-        status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-        print(status, flush=True)
-
-
-def _wait(child: int, seconds: float) -> None:
-    """Until a process has computed for so long, however busy the machine; elsewhere than on Linux: has been there."""
-    clock = (~child << 3) | 2
-    while sys.platform == "linux" and time.clock_gettime(clock) < seconds:
+            break
         time.sleep(5e-4)
-    time.sleep(2e-3 * (1e6 * seconds % 1.0) if sys.platform == "linux" else seconds)
+    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
 
 
 def _warm_up() -> None:

@@ -6,6 +6,7 @@ import json
 import os
 import random
 import re
+import shutil
 import signal
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterator
@@ -15,12 +16,12 @@ import numpy as np
 import pytest
 from problem_files import STRIP, changed
 
-from cli.forks import Forks
+from cli.forks import Forks, Kill
 from magshell.errors import InputError
 from magshell.output.checkpoint import read_step, step_files
 
-# Of each problem, and the longest time that a run computes before, s.
-KILLS, LONGEST = 26, 0.3
+# Of each problem. A run may make so many steps before, and compute so long after them or, with none, from the start, s.
+KILLS, STEPS, SHORT, LONG = 26, 2, 0.04, 0.3
 FIELD = 'flux_density = [0, 0, "2 mT"]\nstops = ["1 mT", "2 mT"]'
 SHORT_STEPS = "[solver]\nfirst_step = 0.02\nlargest_step = 0.04\n"
 # Up and down with stops; a strip that buckles in a field against its remanence, and its branch.
@@ -45,14 +46,21 @@ def test_killed_until_it_is_done(name: str, forks: Forks, tmp_path: Path) -> Non
     file, whole, out, shown = (tmp_path / part for part in (f"{name}.toml", "whole", "out", "shown.txt"))
     file.write_text(PROBLEMS[name])
     assert forks.run(["run", str(file), "--out", str(whole)], tmp_path / "whole.txt") == 0
-    times, killed, kept, seen = random.Random(name), [], [0], dict[Path, bytes]()
+    moments, killed, kept, seen = random.Random(name), list[Kill](), [0], dict[Path, bytes]()
     while len(killed) < KILLS:
         begun = (out / "problem.toml").exists()
         arguments = ["run", "--resume", str(out)] if begun else ["run", str(file), "--out", str(out)]
-        killed.append(times.uniform(0.0, LONGEST))
-        status = forks.run(arguments, shown, killed[-1])
-        where = f"after kills at {killed} s:\n{shown.read_text()[-2000:]}"
+        steps = moments.randint(0, STEPS)
+        kill = Kill(str(out), kept[-1] + steps, moments.uniform(0.0, SHORT if steps else LONG))
+        status = forks.run(arguments, shown, kill)
+        where = f"after kills at {[(kill.steps, kill.seconds) for kill in killed]}:\n{shown.read_text()[-2000:]}"
+        if status == 0:  # It was done before: begin again.
+            check_finished(out, whole, where)
+            shutil.rmtree(out)
+            kept.append(0)
+            continue
         assert status == -signal.SIGKILL, where
+        killed.append(kill)
         if (out / "problem.toml").exists():
             kept.append(check_killed(out, whole, shown.read_text(), kept[-1], seen, where))
     stages = [steps for steps in set(kept) if 0 < steps < len(step_files(whole))]
