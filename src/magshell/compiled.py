@@ -12,13 +12,15 @@ import inspect
 import os
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
 from numba.extending import overload
+
+from magshell.files import lock
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -71,7 +73,9 @@ class Kernel:
     def __call__(self, *arguments: Any) -> Any:
         laws = tuple(type(arguments[position]) for position in self._laws)
         if laws not in self._compiled:
-            self._compiled[laws] = self._compile(laws)
+            with self._one_process(laws):
+                self._compiled[laws] = self._compile(laws)
+                return self._compiled[laws](*arguments)
         return self._compiled[laws](*arguments)
 
     def _folder(self, laws: tuple[type, ...]) -> Path | None:
@@ -84,6 +88,18 @@ class Kernel:
                 return None
             parts.append(f"{law.__module__}.{law.__name__}-{digest}")
         return cache_directory().joinpath(*parts)
+
+    @contextlib.contextmanager
+    def _one_process(self, laws: tuple[type, ...]) -> Iterator[None]:
+        """Hold back other processes that would compile the same, until they can read it from the cache."""
+        folder = self._folder(laws)
+        if folder is None or self.is_compiled(*laws):
+            yield
+            return
+        folder.mkdir(parents=True, exist_ok=True)
+        with open(folder / f"{self.py_func.__name__}.lock", "w") as file:
+            lock(file, wait=True)
+            yield
 
     def _compile(self, laws: tuple[type, ...]) -> Callable[..., Any]:
         options = {"nogil": True, "fastmath": _FASTMATH, "error_model": "numpy"}

@@ -9,6 +9,7 @@ import pathlib
 import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from typing import IO
 
 
 @contextmanager
@@ -79,6 +80,22 @@ def append_line(path: pathlib.Path, line: str) -> None:
         except BaseException:
             file.truncate(before)
             raise
+
+
+def lock(file: IO[str], wait: bool = False) -> bool:
+    """Lock an open file until it is closed, which it also is however the process ends; whether that was possible.
+
+    Where a file system (or Windows) has no locks, it always is.
+    """
+    try:
+        import fcntl
+
+        fcntl.flock(file, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except (ImportError, OSError):
+        return True
+    return True
 
 
 def remove_temporaries(directory: pathlib.Path) -> None:

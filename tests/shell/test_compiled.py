@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import importlib.util
 import shutil
+import threading
+import time
 from pathlib import Path
 from typing import NamedTuple
 
@@ -95,6 +97,24 @@ def test_kernels_know_whether_they_are_compiled(monkeypatch, tmp_path):
     assert kernel(MATERIAL(1.0, 2.0, 3.0, 4.0), np.ones(3)).tolist() == [2.0, 2.0, 2.0]
     assert kernel.is_compiled(MATERIAL)
     assert not kernel.is_compiled(MicropolarMooneyRivlin)
+
+
+@pytest.mark.skipif(importlib.util.find_spec("fcntl") is None, reason="no locks of files")
+def test_of_processes_that_need_the_same_kernel_one_compiles(monkeypatch, tmp_path):
+    """The other waits, and reads the cache."""
+    monkeypatch.setattr(compiled, "cache_directory", lambda: tmp_path)
+    first, second = compiled.Kernel(twice), compiled.Kernel(twice)
+    arguments = MATERIAL(1.0, 2.0, 3.0, 4.0), np.ones(3)
+    with first._one_process((MATERIAL,)):
+        other = threading.Thread(target=second, args=arguments)
+        other.start()
+        first._compiled[MATERIAL,] = first._compile((MATERIAL,))
+        time.sleep(0.2)
+        assert other.is_alive()
+        assert not first.is_compiled(MATERIAL)
+        first(*arguments)
+    other.join()
+    assert [sum(kernel._compiled[MATERIAL,].stats.cache_hits.values()) for kernel in (first, second)] == [0, 1]
 
 
 def twice(material, values):

@@ -7,10 +7,9 @@ import os
 import pathlib
 import socket
 from collections.abc import Iterator
-from typing import IO
 
 from magshell.errors import InputError
-from magshell.files import naming
+from magshell.files import lock, naming
 
 NAME = ".lock"
 
@@ -19,8 +18,8 @@ NAME = ".lock"
 def alone(directory: pathlib.Path) -> Iterator[None]:
     """Hold a results folder.
 
-    The operating system holds the lock for as long as the process lives and takes it back however the process ends, so
-    a killed run never stands in the way of the next. Where a file system (or Windows) has no locks, there is none.
+    The operating system takes the lock back however the process ends, so a killed run never stands in the way of the
+    next. Where a file system (or Windows) has no locks, there is none.
 
     Raises
     ------
@@ -31,7 +30,7 @@ def alone(directory: pathlib.Path) -> Iterator[None]:
     with contextlib.ExitStack() as stack:
         with naming(file):
             held = stack.enter_context(open(file, "a+"))
-        if not _locked(held):
+        if not lock(held):
             held.seek(0)
             raise InputError(f"{directory}: another run writes into it ({held.read().strip() or 'it has just begun'})")
         with naming(file):
@@ -39,15 +38,3 @@ def alone(directory: pathlib.Path) -> Iterator[None]:
             held.write(f"process {os.getpid()} on {socket.gethostname()}\n")
             held.flush()
         yield
-
-
-def _locked(file: IO[str]) -> bool:
-    try:
-        import fcntl
-
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except (ImportError, OSError):
-        return True
-    return True
