@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import os
 import pathlib
-import threading
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from magshell.cli.console import console, say
-from magshell.cli.status import INTERRUPTED, SOLVED
+from magshell.cli.status import SOLVED
 from magshell.errors import InputError
 
 if TYPE_CHECKING:
@@ -59,7 +56,7 @@ def run(given: argparse.Namespace) -> int:
     target = _target(given.out, source, geometry)
     if geometry:
         say(out, f"meshing {source.name} with gmsh ...")
-        mesh = _patiently(lambda: _meshed(given))
+        mesh = _meshed(given)
     else:
         with out.status(f"reading {source.name} ..."):
             mesh = _read(given)
@@ -81,33 +78,6 @@ def say_origin(out: Console, mesh: Mesh) -> None:
 
     if isinstance(mesh, FileMesh):
         say(out, f"mesh: {in_a_line(mesh, mesh.origin)}")
-
-
-def _patiently(action: Callable[[], FileMesh]) -> FileMesh:
-    """What a function returns that may sit in gmsh for minutes; Ctrl-C ends the process, as gmsh cannot be stopped."""
-    terminal = os.dup(2)  # gmsh's own words are kept from it meanwhile
-    done: list[FileMesh] = []
-    failed: list[BaseException] = []
-
-    def work() -> None:
-        try:
-            done.append(action())
-        except BaseException as error:
-            failed.append(error)
-
-    thread = threading.Thread(target=work, daemon=True)
-    thread.start()
-    try:
-        while thread.is_alive():
-            thread.join(0.1)
-    except KeyboardInterrupt:
-        os.write(terminal, b"error: interrupted; nothing was written\n")
-        os._exit(INTERRUPTED)
-    finally:
-        os.close(terminal)
-    if failed:
-        raise failed[0]
-    return done[0]
 
 
 def _meshed(given: argparse.Namespace) -> FileMesh:

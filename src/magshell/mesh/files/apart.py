@@ -1,71 +1,89 @@
-"""Readers of other programs, in a process of their own: on a damaged file they may crash, which then ends only that."""
+"""Calls of other programs, in a process of their own.
+
+On a damaged file they may crash, which then ends only that process. They may be told to stop, and what they print, what
+they leave behind and how they treat signals is nobody's concern.
+"""
 
 from __future__ import annotations
 
 import os
-import pathlib
 import pickle
+import signal
 import subprocess
 import sys
+import threading
+from collections.abc import Callable
+from typing import IO, TypeVar
 
 from magshell.errors import InputError
-from magshell.mesh.files.contents import Contents
 
-_PROGRAMS = {"vtk": "VTK", "gmsh": "gmsh"}
+Result = TypeVar("Result")
 
 
-def read_apart(reader: str, path: pathlib.Path, name: str) -> Contents:
-    """What a reader makes of a file.
+def apart(function: Callable[..., Result], *arguments: object, program: str, name: str) -> Result:
+    """What a function returns that is called in another process.
 
     Parameters
     ----------
-    reader : {"vtk", "gmsh"}
-        `read_vtk` or `read_with_gmsh`.
-    path : pathlib.Path
+    function : callable
+        Of a module; it, the arguments and the result can be pickled.
+    *arguments
+    program : str
+        That the function calls, for messages.
     name : str
-        Of the file, for messages.
+        Of the file that it is called for, for messages.
 
     Raises
     ------
     InputError
-        What the reader refuses, or that it has crashed.
+        What the function raises, or that the program has crashed.
     """
-    done = subprocess.run(
-        [sys.executable, "-m", "magshell.mesh.files.apart", reader, str(path), name],
-        stdin=subprocess.DEVNULL,
+    with subprocess.Popen(
+        [sys.executable, "-m", __name__],
+        stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
         env={**os.environ, "PYTHONPATH": os.pathsep.join(part for part in sys.path if part)},
-        check=False,
-    )
+    ) as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        try:
+            process.stdin.write(pickle.dumps((function, arguments, program, name)))
+            process.stdin.flush()
+            answer = process.stdout.read()
+        finally:
+            process.kill()
     try:
-        found = pickle.loads(done.stdout)
+        found: Result | InputError = pickle.loads(answer)
     except (EOFError, pickle.UnpicklingError):
-        raise InputError(f"{name}: is damaged: {_PROGRAMS[reader]} crashes on it") from None
-    if isinstance(found, str):
-        raise InputError(found)
-    assert isinstance(found, Contents)
+        raise InputError(f"{name}: is damaged: {program} crashes on it") from None
+    if isinstance(found, InputError):
+        raise found
     return found
 
 
-def _main(reader: str, path: str, name: str) -> None:
-    """Read, and send what was read, or what is wrong, to standard output, on which nobody else writes."""
+def _main() -> None:
+    """Send what a call returns, or what is wrong, to standard output, on which nobody else writes."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    asked = sys.stdin.buffer
+    function, arguments, program, name = pickle.load(asked)
+    threading.Thread(target=_end_after, args=(asked,), daemon=True).start()
     with os.fdopen(os.dup(1), "wb") as answer:
         os.dup2(2, 1)
-        answer.write(pickle.dumps(_read(reader, pathlib.Path(path), name)))
+        _limit_memory()
+        try:
+            found = function(*arguments)
+        except InputError as error:
+            found = error
+        except Exception as error:
+            found = InputError(f"{name}: cannot be read by {program}: {type(error).__name__}; it is damaged")
+        answer.write(pickle.dumps(found))
 
 
-def _read(reader: str, path: pathlib.Path, name: str) -> Contents | str:
-    from magshell.mesh.files.from_gmsh import read_with_gmsh
-    from magshell.mesh.files.vtk import read_vtk
-
-    _limit_memory()
-    try:
-        return {"vtk": read_vtk, "gmsh": read_with_gmsh}[reader](path, name)
-    except InputError as error:
-        return str(error)
-    except Exception as error:
-        return f"{name}: cannot be read by {_PROGRAMS[reader]}: {type(error).__name__}; it is damaged"
+def _end_after(asked: IO[bytes]) -> None:
+    """End with the process that has asked, however it ends."""
+    asked.read()
+    os._exit(1)
 
 
 def _limit_memory() -> None:
@@ -80,4 +98,4 @@ def _limit_memory() -> None:
 
 
 if __name__ == "__main__":
-    _main(*sys.argv[1:])
+    _main()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 import os
 import pathlib
@@ -12,12 +11,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from magshell.errors import InputError
+from magshell.mesh.files.apart import apart
 from magshell.mesh.files.assembling import FileMesh, assemble
 from magshell.mesh.files.contents import GROUPED
 from magshell.mesh.files.cutting import with_bad_ones_cut
 from magshell.mesh.files.from_gmsh import contents_of
 from magshell.mesh.files.paths import GEOMETRY, readable, textual
-from magshell.mesh.files.session import installed, quiet, session
+from magshell.mesh.files.session import required, session
 from magshell.mesh.files.units import agreed, length_unit
 from magshell.mesh.geometry import diagonal_normals
 from magshell.mesh.quality import worst
@@ -28,8 +28,6 @@ CONVERTED = "mm"
 IGES = (".iges", ".igs")
 """Formats in which a closed surface, as a tube, has its seam twice: the nodes there are joined."""
 SCRIPTS = (".geo", ".geo_unrolled")
-MOST_LEFT = 200
-DRAINED = 0.125
 DEFAULT_ELEMENTS = 800
 """About as many elements does a mesh have whose size nobody said."""
 MOST_ELEMENTS = 1_000_000
@@ -114,24 +112,26 @@ def from_cad(file: str | os.PathLike[str], size: float | None = None, unit: str 
     if size is not None and not (math.isfinite(size) and size > 0.0):
         raise InputError(f"size = {size!r} is not allowed; it must be a positive length, in m")
     own = agreed(unit, CONVERTED if suffix in KNOWS_ITS_UNIT else None, name)
-    try:
-        with session(name) as gmsh:
-            open_geometry(gmsh, path, name)
-            expected = set_size(gmsh, None if size is None else size / length_unit(own), suffix)
-            structured = suffix in SCRIPTS and "Transfinite" in path.read_text("utf-8", "replace")
-            attempts = ATTEMPTS[STRUCTURED:] if structured else ATTEMPTS
-            if expected > MANY:
-                attempts = tuple(sorted(attempts, key=lambda each: (not each.recombine, each == QUASI_STRUCTURED)))
-            return _best(gmsh, name, own, attempts)
-    except InputError:
-        if suffix in SCRIPTS and installed():
-            _drain(name)
-        raise
+    required(name)
+    return apart(_mesh, path, None if size is None else size / length_unit(own), own, program="gmsh", name=name)
+
+
+def _mesh(path: pathlib.Path, size: float | None, unit: str) -> FileMesh:
+    """What `from_cad` returns; the size in the file's unit."""
+    name, suffix = path.name, path.suffix.lower()
+    with session(name) as gmsh:
+        open_geometry(gmsh, path, name)
+        expected = set_size(gmsh, size, suffix)
+        structured = suffix in SCRIPTS and "Transfinite" in path.read_text("utf-8", "replace")
+        attempts = ATTEMPTS[STRUCTURED:] if structured else ATTEMPTS
+        if expected > MANY:
+            attempts = tuple(sorted(attempts, key=lambda each: (not each.recombine, each == QUASI_STRUCTURED)))
+        return _best(gmsh, name, unit, attempts)
 
 
 def open_geometry(gmsh: Any, path: pathlib.Path, name: str) -> None:
     """Load the geometry; refuse volumes; name surfaces and curves if nothing has a name."""
-    with quiet(), tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as folder:
         gmsh.open(str(_ended(path, pathlib.Path(folder))))
         gmsh.model.occ.synchronize()
     if gmsh.model.getEntities(3):
@@ -158,21 +158,6 @@ def _ended(path: pathlib.Path, folder: pathlib.Path) -> pathlib.Path:
     copy = folder / path.name
     copy.write_bytes(path.read_bytes() + b"\n")
     return copy
-
-
-def _drain(name: str) -> None:
-    """Make gmsh's parser drop the rest of a wrong script, which it would else take for the begin of the next one.
-
-    It drops a word for every file that it opens after having been initialised anew.
-    """
-    with tempfile.TemporaryDirectory() as folder:
-        script = pathlib.Path(folder) / "drain.geo"
-        script.write_text(f"Mesh.MeshSizeMin = {DRAINED};\n")
-        for _ in range(MOST_LEFT):
-            with contextlib.suppress(InputError), session(name) as gmsh:
-                gmsh.open(str(script))
-                if gmsh.option.getNumber("Mesh.MeshSizeMin") == DRAINED:
-                    return
 
 
 def _name_entity(gmsh: Any, dimension: int, entity: int) -> None:
@@ -263,9 +248,8 @@ def meshed(gmsh: Any, name: str, unit: str, attempt: Attempt) -> Candidate:
     option("Mesh.RecombineAll", 1 if attempt.recombine else 0)
     option("Mesh.ElementOrder", 1)
     option("Mesh.SecondOrderIncomplete", 1)
-    with quiet():
-        gmsh.model.mesh.generate(2)
-        gmsh.model.mesh.setOrder(2)
+    gmsh.model.mesh.generate(2)
+    gmsh.model.mesh.setOrder(2)
     if name.lower().endswith(IGES):
         gmsh.model.mesh.removeDuplicateNodes()
     _put_on_surfaces(gmsh)

@@ -11,7 +11,7 @@ import numpy as np
 from magshell.errors import InputError
 from magshell.mesh.files.cells import GMSH
 from magshell.mesh.files.contents import GROUPED, Block, Contents, in_order, places
-from magshell.mesh.files.session import quiet, session
+from magshell.mesh.files.session import session
 
 
 def read_with_gmsh(path: pathlib.Path, name: str) -> Contents:
@@ -29,8 +29,7 @@ def read_with_gmsh(path: pathlib.Path, name: str) -> Contents:
         gmsh is not there, or refuses the file.
     """
     with session(name) as gmsh:
-        with quiet():
-            gmsh.merge(str(path))
+        gmsh.merge(str(path))
         return contents_of(gmsh, name)
 
 

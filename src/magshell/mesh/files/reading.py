@@ -6,7 +6,7 @@ import os
 import pathlib
 
 from magshell.errors import InputError
-from magshell.mesh.files.apart import read_apart
+from magshell.mesh.files.apart import apart
 from magshell.mesh.files.assembling import FileMesh, assemble
 from magshell.mesh.files.contents import Contents
 from magshell.mesh.files.paths import GEOMETRY, readable
@@ -63,7 +63,9 @@ def _contents(path: pathlib.Path, name: str) -> Contents:
 
             return read_inp(path.read_bytes(), name)
         case ".vtu" | ".vtk":
-            return read_apart("vtk", path, name)
+            from magshell.mesh.files.vtk import read_vtk
+
+            return apart(read_vtk, path, name, program="VTK", name=name)
         case _:
             from magshell.mesh.files.other import read_other
 
@@ -80,4 +82,6 @@ def _msh(path: pathlib.Path, name: str) -> Contents:
     except PlainReaderError as error:
         if not installed():
             raise InputError(f"{error}; or let gmsh read it: {INSTALL}") from None
-    return read_apart("gmsh", path, name)
+    from magshell.mesh.files.from_gmsh import read_with_gmsh
+
+    return apart(read_with_gmsh, path, name, program="gmsh", name=name)

@@ -1,18 +1,14 @@
-"""gmsh in this process: begun and ended cleanly, silent, with errors in words."""
+"""gmsh, begun and ended, with errors in words. It may crash and changes its process: call it `apart`."""
 
 from __future__ import annotations
 
-import os
 import re
-import sys
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
 from typing import Any
 
 from magshell.errors import InputError
-from magshell.processes import let_broken_pipes_raise
 from magshell.units import shortened
 
 DEBIAN = "libglu1-mesa libgl1 libxcursor1 libxfixes3 libxft2 libxinerama1 libxrender1 libfontconfig1"
@@ -23,6 +19,12 @@ INSTALL = 'pip install "magshell[gmsh]"'
 def installed() -> bool:
     """Whether gmsh is there."""
     return find_spec("gmsh") is not None
+
+
+def required(name: str) -> None:
+    """Raise an InputError for a file if gmsh is not installed."""
+    if not installed():
+        raise InputError(f"{name}: needs gmsh, which is not installed: {INSTALL}")
 
 
 @contextmanager
@@ -37,14 +39,10 @@ def session(name: str) -> Iterator[Any]:
     Raises
     ------
     InputError
-        gmsh is not installed, does not load or is in use, or an error of gmsh in the block, in its words.
+        gmsh does not load, or an error of gmsh in the block, in its words.
     """
     gmsh = _loaded(name)
-    if gmsh.isInitialized():
-        raise InputError(f"{name}: gmsh is in use in this process; end that use first with gmsh.finalize()")
-    with quiet():
-        gmsh.initialize(readConfigFiles=False, interruptible=False)
-    let_broken_pipes_raise()
+    gmsh.initialize(readConfigFiles=False, interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         yield gmsh
@@ -65,33 +63,9 @@ def _bearable(text: str) -> str:
 def _loaded(name: str) -> Any:
     try:
         import gmsh
-    except ImportError:
-        raise InputError(f"{name}: needs gmsh, which is not installed: {INSTALL}") from None
     except OSError as error:
         raise InputError(
             f"{name}: gmsh is installed but does not load ({shortened(str(error))}); it needs libraries of the system, "
             f"on Debian and Ubuntu: apt-get install {DEBIAN}"
         ) from None
     return gmsh
-
-
-@contextmanager
-def quiet() -> Iterator[None]:
-    """Keep what the geometry kernel prints by itself from the terminal."""
-    try:
-        streams = [sys.__stdout__.fileno(), sys.__stderr__.fileno()] if sys.__stdout__ and sys.__stderr__ else []
-    except (OSError, ValueError):
-        streams = []
-    for stream in (sys.stdout, sys.stderr):
-        if stream is not None:
-            stream.flush()
-    kept = [(stream, os.dup(stream)) for stream in streams]
-    with tempfile.TemporaryFile() as nowhere:
-        try:
-            for stream, _ in kept:
-                os.dup2(nowhere.fileno(), stream)
-            yield
-        finally:
-            for stream, copy in kept:
-                os.dup2(copy, stream)
-                os.close(copy)

@@ -1,0 +1,70 @@
+"""Calls in a process of their own: what comes back of results, errors and crashes, and that none is left behind."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from processes import hear_ctrl_c
+
+from magshell.errors import InputError, MeshError
+from magshell.mesh.files.apart import apart
+
+
+def test_results_and_errors_come_back():
+    """Of the class that they are; what is no InputError is told by its kind."""
+    assert apart(divmod, 7, 2, program="gmsh", name="a.step") == (3, 1)
+    with pytest.raises(MeshError, match=r"^element 3 is turned$"):
+        apart(refuse, program="gmsh", name="a.step")
+    with pytest.raises(InputError, match=r"^a.step: cannot be read by VTK: ZeroDivisionError; it is damaged$"):
+        apart(divmod, 7, 0, program="VTK", name="a.step")
+
+
+def refuse():
+    raise MeshError("element 3 is turned")
+
+
+def test_a_crash_is_an_error():
+    with pytest.raises(InputError, match=r"^a.step: is damaged: gmsh crashes on it$"):
+        apart(os.abort, program="gmsh", name="a.step")
+
+
+def test_words_of_the_program_are_not_taken_for_the_answer(capfd):
+    assert apart(os.system, "echo a word; echo another 1>&2", program="gmsh", name="a.step") == 0
+    assert tuple(capfd.readouterr()) == ("", "")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no signals to another process")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+def test_it_ends_with_the_process_that_asked(tmp_path, number):
+    code = (
+        "import os, time\nfrom magshell.mesh.files.apart import apart\n"
+        f"apart(os.system, 'echo $PPID > {tmp_path}/new; mv {tmp_path}/new {tmp_path}/asked; sleep 60',"
+        " program='gmsh', name='a.step')"
+    )
+    command = [sys.executable, "-c", code]
+    with subprocess.Popen(command, stderr=subprocess.DEVNULL, preexec_fn=hear_ctrl_c) as process:
+        until(lambda: (tmp_path / "asked").exists())
+        process.send_signal(number)
+        process.wait(timeout=30)
+    asked = int((tmp_path / "asked").read_text())
+    until(lambda: not is_there(asked))
+
+
+def until(condition):
+    end = time.monotonic() + 60.0
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+def is_there(process):
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    return True
