@@ -36,7 +36,6 @@ nitpicky = True
 exclude_patterns = ["_build", "*_study", "site", "gallery", "worked-examples/*.ipynb"]
 templates_path = ["site/templates"]
 nitpick_ignore_regex = [("py:class", r"(numpy|collections\.abc)\..*")]
-rst_epilog = r".. |B| replace:: \|B\|"
 
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4

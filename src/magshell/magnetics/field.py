@@ -82,7 +82,7 @@ class UniformField:
 
     @property
     def magnitude(self) -> float:
-        """|B| at multiplier 1, T."""
+        """Length of the vector at multiplier 1, T."""
         return float(np.linalg.norm(self.vector))
 
     def turned(self, angle: float) -> FloatArray:
