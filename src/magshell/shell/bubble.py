@@ -8,7 +8,8 @@ tangents a_α at the element's centre,
 
 A the element's area, A^αβ the reference metric at the centre. In its plane the combination is less stiff than full
 integration would make it, by 64/135 (4 + 1) = 2.4 on a square of incompressible material; out of the plane it is of the
-order of bending: there a larger stiffness would bring back the locking that the bubble removes. W is objective, since α turns with the body, and vanishes with α.
+order of bending: there a larger stiffness would bring back the locking that the bubble removes. W is objective, since α
+turns with the body, and vanishes with α.
 
 The vector of the turning field of triangles is held in its plane by the same k^αβ, with s = 0. Free there, it lets a
 mesh of triangles in rows have membrane modes that only the couple stress resists. Out of its plane it must be free:
