@@ -24,11 +24,11 @@ from magshell.files import lock
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-# Sums may be reordered and fused (vector instructions), but NaN and infinity keep their meaning.
 LAWS = ("material", "coupling")
 KERNEL_FOLDERS = ("shell", "materials", "magnetics")
-_FASTMATH = {"reassoc", "contract", "nsz", "arcp"}
-_LAW_OPTIONS = {"fastmath": _FASTMATH, "error_model": "numpy", "_nrt": True}
+# Sums may be reordered and fused (vector instructions), but NaN and infinity keep their meaning. Nobody calls from C.
+_OPTIONS = {"fastmath": {"reassoc", "contract", "nsz", "arcp"}, "error_model": "numpy", "no_cfunc_wrapper": True}
+_LAW_OPTIONS = _OPTIONS | {"_nrt": True}
 
 
 def _user_cache() -> Path:
@@ -102,7 +102,7 @@ class Kernel:
             yield
 
     def _compile(self, laws: tuple[type, ...]) -> Callable[..., Any]:
-        options = {"nogil": True, "fastmath": _FASTMATH, "error_model": "numpy"}
+        options = _OPTIONS | {"nogil": True}
         folder = self._folder(laws)
         if folder is None:
             return numba.njit(**options)(self.py_func)
@@ -131,7 +131,7 @@ def inline(function: Function) -> Function:
 
     It must not allocate: without reference counting, calls and views of arrays cost nothing.
     """
-    compiled: Function = numba.njit(fastmath=_FASTMATH, error_model="numpy", _nrt=False)(function)
+    compiled: Function = numba.njit(**_OPTIONS, _nrt=False)(function)
     return compiled
 
 
