@@ -45,6 +45,12 @@ class Results:
     path: Path
     notes: list[str]
 
+    def __repr__(self) -> str:
+        return f"Results('{self.problem.title}', {self.path!r})"
+
+    def _repr_html_(self) -> str:
+        return self.path._repr_html_()
+
 
 def read(directory: str | os.PathLike[str]) -> Results:
     """Read a results folder, also while a run writes into it.

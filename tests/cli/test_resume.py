@@ -342,6 +342,8 @@ def test_reading_a_finished_folder(finished: Path) -> None:
     results = ms.results.read(finished)
     rows = (finished / "history.csv").read_text().splitlines()
     assert results.path.converged
+    assert repr(results).endswith(f"{results.path!r})")
+    assert "data:image/png" in results._repr_html_()
     assert results.path.summary == json.loads((finished / "summary.json").read_text()) | {
         "cpu_seconds": results.path.cpu_seconds
     }
