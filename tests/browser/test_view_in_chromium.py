@@ -16,7 +16,8 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
-from magshell.output.page import write_page
+from magshell.output.page import shown_steps, write_page
+from magshell.output.page import steps as page_steps
 from magshell.output.registry import OUTPUTS
 from magshell.output.tessellation import Tessellation
 from magshell.solver.critical import LIMIT_POINT, CriticalPoint
@@ -271,6 +272,30 @@ def test_triangles_and_quadrilaterals_are_drawn_as_in_pictures(shared, tmp_path)
     assert np.abs(points.reshape(-1, 3) - surface.points).max() < 1e-4 * mesh.size
     assert np.abs(normals.reshape(-1, 3) - surface.normals).max() < 2e-3
     np.testing.assert_array_equal(triangles.reshape(-1, 3), surface.triangles)
+    assert shared.console() == []
+
+
+def test_marks_of_a_page_that_leaves_out_steps_are_at_theirs(shared, tmp_path, monkeypatch):
+    """The line goes through all steps; marks, the ring and a click are at those that are there."""
+    path = rolled(plate((2, 2)), 9)
+    monkeypatch.setattr(page_steps, "MOST_BYTES", 4.5 * page_steps._bytes_of_step(path))
+    shared.open(write_page(path, tmp_path / "few.html"))
+    numbers = [step.number for step in shown_steps(path)]
+    assert len(numbers) == 4
+    count = "return [...plot.querySelectorAll('.line')].map(line => line.querySelectorAll('.mark').length)"
+    assert set(shared.driver.execute_script(count)) - {0} == {4}
+    line = shared.driver.find_element(By.CSS_SELECTOR, "#plot polyline").get_attribute("points")
+    assert len(line.split()) == len(path.steps)
+    shared.do("go(2);" + AFTER_DRAWING)
+    assert text(shared, "step") == f"step {numbers[2]} of 9"
+    place = shared.driver.execute_script("return curves.px(header.curves.x[given])".replace("given", str(numbers[2])))
+    assert ring(shared)[0] == pytest.approx(place)
+    assert text(shared, "field") == f"|B| = {1e3 * FIELD * numbers[2] / 9:.4g} mT"
+    nearest = "const box = plot.getBoundingClientRect(); const {x, lines} = header.curves; const i = given[0];"
+    nearest += (
+        "return curves.nearest({clientX: box.left + curves.px(x[i]), clientY: box.top + curves.py(lines[0].y[i])});"
+    )
+    assert [shared.do(nearest, number) for number in numbers] == [0, 1, 2, 3]
     assert shared.console() == []
 
 

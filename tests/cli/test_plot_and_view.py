@@ -11,6 +11,7 @@ import magshell as ms
 from magshell import cli, results
 from magshell.output import rendering
 from magshell.output.checkpoint import step_files
+from magshell.output.page import steps as page_steps
 
 
 @pytest.fixture(scope="session")
@@ -46,6 +47,13 @@ def test_view_writes_one_page(folder, capsys):
     assert "<h1>Strip of aspect ratio 10</h1>" in page
     assert "ends at step" not in page
     assert "10 steps" in capsys.readouterr().out
+
+
+def test_view_says_which_steps_are_left_out(folder, monkeypatch, capsys):
+    monkeypatch.setattr(page_steps, "MOST_BYTES", 1)
+    assert cli.main(["view", str(folder)]) == 0
+    assert "shows 2 of the steps 0 to 10" in " ".join(capsys.readouterr().out.split())
+    assert "2 of 11 are shown" in (folder / "view.html").read_text(encoding="utf-8")
 
 
 def test_view_of_an_interrupted_run_ends_where_it_came_to(folder, tmp_path):

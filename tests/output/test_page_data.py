@@ -16,7 +16,7 @@ from magshell.errors import InputError
 from magshell.materials import MicropolarMooneyRivlin, MicropolarNeoHookean, MicropolarStVenantKirchhoff
 from magshell.output import registry
 from magshell.output.animation import draw_steps
-from magshell.output.page import page, write_page
+from magshell.output.page import page, shown_steps, steps, write_page
 from magshell.output.page.arrays import LARGEST, MISSING, quantised, span
 from magshell.output.page.facts import facts
 from magshell.output.registry import OUTPUTS, Output
@@ -106,6 +106,51 @@ def test_interrupted_path_says_where_it_ends():
     assert "ends at step 4: interrupted" in page(path)
 
 
+def long_path(monkeypatch, most: int):
+    """Forty steps in two stages, with a critical point, when a page may have so many."""
+    path = FakePath(np.linspace(0, 1, 41))
+    for step in path.steps[18:]:
+        step.stage = 1
+    path.critical_points = [SimpleNamespace(arc_length=0.5 * (path.steps[28].arc_length + path.steps[29].arc_length))]
+    monkeypatch.setattr(steps, "MOST_BYTES", (most + 0.5) * steps._bytes_of_step(path))
+    return path
+
+
+@pytest.mark.parametrize("most", [40, 25, 12, 7])
+def test_too_long_path_keeps_what_must_not_be_missed(monkeypatch, most):
+    numbers = [step.number for step in shown_steps(long_path(monkeypatch, most))]
+    assert len(numbers) == most
+    assert {0, 17, 28, 29, 40} <= set(numbers)
+    assert max(np.diff(numbers)) <= 2 * 41 / (most - 4), numbers
+
+
+def test_limit_holds_also_where_every_step_tells(monkeypatch):
+    path = long_path(monkeypatch, 9)
+    for step in path.steps:
+        step.stage = step.number
+    numbers = [step.number for step in shown_steps(path)]
+    assert (len(numbers), numbers[0], numbers[-1]) == (9, 0, 40)
+    monkeypatch.setattr(steps, "MOST_BYTES", 1)
+    assert [step.number for step in shown_steps(path)] == [0, 40]
+
+
+def test_page_of_a_long_path_is_small_says_so_and_has_whole_curves(monkeypatch):
+    path = long_path(monkeypatch, 10)
+    path.critical_points = []
+    text = page(path)
+    assert dict(facts(path, shown_steps(path)))["steps"] in text
+    numbers = sum(len(content) for content in re.findall(r'id="array-(?:displacement|rotation|energy)">(.*?)<', text))
+    assert numbers <= steps.MOST_BYTES
+    about = {output["name"]: output for output in header(text)["outputs"]}
+    assert about["displacement"]["steps"] == len(header(text)["steps"]) == 10
+    assert len(header(text)["curves"]["x"]) == len(path.steps) == 41
+
+
+def test_short_path_is_shown_whole(path):
+    assert shown_steps(path) == path.steps
+    assert "steps" not in dict(facts(path, path.steps))
+
+
 def test_path_without_steps_is_bad_input():
     path = FakePath()
     path.steps = []
@@ -146,8 +191,8 @@ def test_new_output_appears_everywhere(path, tmp_path, monkeypatch, can_draw):
 )
 def test_problem_is_described_in_words(path, law, words):
     path.model.shell.material = type(law.__name__, (SimpleNamespace,), {})(shear_modulus=135e3)
-    said = dict(facts(path))
+    said = dict(facts(path, path.steps))
     assert said["material"] == f"{words}, shear modulus 135 kPa"
     assert (said["thickness"], said["remanence"]) == ("0.9 mm", "up to 80 mT")
     path.discretisation.body.remanence = 0 * path.discretisation.body.remanence
-    assert dict(facts(path))["remanence"] == "none"
+    assert dict(facts(path, path.steps))["remanence"] == "none"

@@ -31,7 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """Write the page."""
-    from magshell.output.page import write_page
+    from magshell.output.page import shown_steps, write_page
     from magshell.output.registry import find
     from magshell.results import read
 
@@ -39,10 +39,11 @@ def run(given: argparse.Namespace) -> int:
     found = read(given.directory)
     out = console()
     file = pathlib.Path(given.out or pathlib.Path(given.directory) / "view.html")
+    shown, last = len(shown_steps(found.path)), len(found.path.steps) - 1
     with bar(out, "collecting the outputs of every step") as advance:
         write_page(found.path, file, found.problem.title, given.color, advance=advance)
-    say(
-        out,
-        f"page: {file} ({file.stat().st_size / 1e6:.2g} MB, {len(found.path.steps) - 1} steps); open it in a browser",
-    )
+    say(out, f"page: {file} ({file.stat().st_size / 1e6:.2g} MB, {last} steps); open it in a browser")
+    if shown <= last:
+        text = f"shows {shown} of the steps 0 to {last}, spread evenly: all would be too much for a browser"
+        say(out, f"warning: the page {text}", style="yellow")
     return SOLVED

@@ -3,5 +3,6 @@
 from __future__ import annotations
 
 from magshell.output.page.page import page, write_page
+from magshell.output.page.steps import shown_steps
 
-__all__ = ["page", "write_page"]
+__all__ = ["page", "shown_steps", "write_page"]

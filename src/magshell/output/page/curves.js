@@ -1,4 +1,5 @@
-// The curves of the probes as SVG: a mark at every step, hollow where unstable, a ring at the present one.
+// The curves of the probes as SVG through all steps: a mark at every step of the page, hollow where unstable, a ring at
+// the present one.
 
 const SVG = "http://www.w3.org/2000/svg";
 
@@ -19,14 +20,15 @@ const MARKS = {
 const DASHES = { "-": "none", "--": "7 4", ":": "2 3" };
 
 class Curves {
-  constructor(plot, legend, about, unstable, chosen) {
-    Object.assign(this, { plot, about, unstable });
+  // `steps` are those of the page; their numbers are their places in `about.x` and in `y` of each line.
+  constructor(plot, legend, about, steps, chosen) {
+    Object.assign(this, { plot, about, steps });
     plot.addEventListener("click", (event) => {
       const step = this.nearest(event);
       if (step !== null) chosen(step);
     });
     for (const line of about.lines) this.explain(legend, line);
-    if (unstable.some(Boolean)) this.remark(legend, MARKS.o, "hollow", "unstable");
+    if (steps.some((step) => step.unstable)) this.remark(legend, MARKS.o, "hollow", "unstable");
     if (about.critical.length) this.remark(legend, MARKS.D, "critical", "critical point");
     new ResizeObserver(() => this.draw()).observe(plot);
   }
@@ -112,11 +114,10 @@ class Curves {
     const group = svg(this.plot, "g", { class: "line", style: `color:${colour}` });
     const points = y.map((value, i) => `${this.px(this.about.x[i])},${this.py(value)}`);
     svg(group, "polyline", { points: points.join(" "), "stroke-dasharray": DASHES[dash], class: "stroke" });
-    y.forEach((value, i) => {
-      const place = `translate(${this.px(this.about.x[i])} ${this.py(value)})`;
-      const kind = this.unstable[i] ? "hollow" : "mark";
-      svg(group, "path", { d: MARKS[marker], transform: place, class: kind });
-    });
+    for (const { number, unstable } of this.steps) {
+      const place = `translate(${this.px(this.about.x[number])} ${this.py(y[number])})`;
+      svg(group, "path", { d: MARKS[marker], transform: place, class: unstable ? "hollow" : "mark" });
+    }
   }
 
   // Show which step is the present one.
@@ -124,10 +125,11 @@ class Curves {
     this.step = step;
     if (!this.marks) return;
     const { x, lines } = this.about;
-    this.now.setAttribute("d", `M${this.px(x[step])},${this.box.top}V${this.box.bottom}`);
+    const { number } = this.steps[step];
+    this.now.setAttribute("d", `M${this.px(x[number])},${this.box.top}V${this.box.bottom}`);
     this.marks.replaceChildren();
     for (const { y, colour } of lines) {
-      const ring = { cx: this.px(x[step]), cy: this.py(y[step]), r: 7, class: "ring line", style: `color:${colour}` };
+      const ring = { cx: this.px(x[number]), cy: this.py(y[number]), r: 7, class: "ring line", style: `color:${colour}` };
       svg(this.marks, "circle", ring);
     }
   }
@@ -138,8 +140,8 @@ class Curves {
     const [x, y] = [event.clientX - place.left, event.clientY - place.top];
     let best = null, least = Infinity;
     for (const line of this.about.lines) {
-      line.y.forEach((value, i) => {
-        const distance = Math.hypot(this.px(this.about.x[i]) - x, this.py(value) - y);
+      this.steps.forEach(({ number }, i) => {
+        const distance = Math.hypot(this.px(this.about.x[number]) - x, this.py(line.y[number]) - y);
         if (distance < least) [best, least] = [i, distance];
       });
     }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -32,13 +32,14 @@ class Data(NamedTuple):
     arrays: dict[str, str]
 
 
-def collect(path: Path, color: str, advance: Callable[[float], None]) -> Data:
+def collect(path: Path, steps: Sequence[Step], color: str, advance: Callable[[float], None]) -> Data:
     """Everything a page shows of a path.
 
     Parameters
     ----------
     path : Path
-        With at least one step.
+    steps : sequence of Step
+        Those of the path that are shown, one at least; the curves have all.
     color : str
         Output that colours the shape when the page opens.
     advance : callable
@@ -61,16 +62,16 @@ def collect(path: Path, color: str, advance: Callable[[float], None]) -> Data:
     }
     outputs = []
     for number, output in enumerate(OUTPUTS.values()):
-        about, arrays[output.name] = _output(path, output)
+        about, arrays[output.name] = _output(path, steps, output)
         advance((number + 1) / len(OUTPUTS))
         outputs.append(about)
-    magnitudes = [float(np.linalg.norm(step.flux_density)) for step in path.steps]
+    magnitudes = [float(np.linalg.norm(step.flux_density)) for step in steps]
     header = {
         "outputs": outputs,
         "colour": f"{first.name} {_column(first, component)}",
         "mesh": kinds,
         "edges": len(mesh.elements) <= MOST_ELEMENTS_WITH_EDGES,
-        "hull": _hull(path).tolist(),
+        "hull": _hull(path, steps).tolist(),
         "view": _view(path),
         "arrows": {"output": "remanence", "most": MOST_ARROWS, "length": _arrow_length(mesh)},
         "steps": [
@@ -82,7 +83,7 @@ def collect(path: Path, color: str, advance: Callable[[float], None]) -> Data:
                 "magnitude": magnitude,
                 "unstable": bool(step.negative_pivots),
             }
-            for step, magnitude in zip(path.steps, magnitudes, strict=True)
+            for step, magnitude in zip(steps, magnitudes, strict=True)
         ],
         "strongest": max(magnitudes),
         "stages": path.steps[-1].stage + 1,
@@ -98,12 +99,12 @@ def _column(output: Output, component: int | None) -> int:
     return 0 if output.components == 1 else output.components
 
 
-def _output(path: Path, output: Output) -> tuple[dict[str, Any], str]:
+def _output(path: Path, steps: Sequence[Step], output: Output) -> tuple[dict[str, Any], str]:
     """Description and codes of an output: step by step, component by component; once if it never changes."""
     count = output.components
     ranges: list[list[tuple[float, float]]] = [[] for _ in range(count + (count > 1))]
     codes = []
-    for step in path.steps:
+    for step in steps:
         values = np.asarray(output.evaluate(path.discretisation, step.state), dtype=float)
         columns = values.reshape(len(values), count).T
         coded = [quantised(column) for column in columns]
@@ -165,18 +166,14 @@ def curves(path: Path) -> dict[str, Any]:
     }
 
 
-def _positions(path: Path) -> Iterable[FloatArray]:
-    points = path.discretisation.mesh.points
-    return (points + step.state.u for step in path.steps)
-
-
-def _hull(path: Path) -> FloatArray:
-    """Points (n, 3) of the path that reach farthest in directions all around: what a picture of it must hold."""
+def _hull(path: Path, steps: Sequence[Step]) -> FloatArray:
+    """Points (n, 3) of the steps that reach farthest in directions all around: what a picture of them must hold."""
     number = np.arange(DIRECTIONS) + 0.5
     height, turn = 1.0 - 2.0 * number / DIRECTIONS, np.pi * (1.0 + 5.0**0.5) * number
     ring = np.sqrt(1.0 - height**2)
     directions = np.stack([ring * np.cos(turn), ring * np.sin(turn), height])
-    extreme = np.concatenate([x[np.unique((x @ directions).argmax(axis=0))] for x in _positions(path)])
+    positions = (path.discretisation.mesh.points + step.state.u for step in steps)
+    extreme = np.concatenate([x[np.unique((x @ directions).argmax(axis=0))] for x in positions])
     return np.asarray(extreme[np.unique((extreme @ directions).argmax(axis=0))])
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from magshell.units import FLUX_DENSITY, LENGTH, STRESS, show
 
 if TYPE_CHECKING:
-    from magshell.solver.path import Path
+    from magshell.solver.path import Path, Step
 
 Facts: TypeAlias = Sequence[tuple[str, str]]
 PEOPLE = {
@@ -22,8 +22,8 @@ PEOPLE = {
 }
 
 
-def facts(path: Path) -> Facts:
-    """Label and text of each: material, thickness, remanence, mesh, how the path ended, version."""
+def facts(path: Path, shown: Sequence[Step]) -> Facts:
+    """Label and text of each: material, thickness, remanence, mesh, steps left out, how the path ended, version."""
     shell = path.model.shell
     material = shell.material
     words = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(material).__name__).lower()
@@ -36,6 +36,8 @@ def facts(path: Path) -> Facts:
         ("remanence", f"up to {show(remanence, FLUX_DENSITY)}" if remanence else "none"),
         ("mesh", f"{len(path.discretisation.mesh.elements)} elements, {path.discretisation.dofs} unknowns"),
     ]
+    if len(shown) < len(path.steps):
+        lines.append(("steps", f"{len(shown)} of {len(path.steps)} are shown: all would be too much for a browser"))
     if not path.converged:
         lines.append(("path", f"ends at step {path.steps[-1].number}: {path.reason}"))
     return [*lines, ("magshell", version("magshell"))]

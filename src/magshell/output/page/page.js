@@ -213,7 +213,6 @@ try {
   scene = null;
   at("message").textContent = `This browser cannot draw the shape: ${error.message}.`;
 }
-const unstable = header.steps.map((step) => step.unstable);
-curves = new Curves(at("plot"), at("legend"), header.curves, unstable, (step) => { play(false); go(step); });
+curves = new Curves(at("plot"), at("legend"), header.curves, header.steps, (step) => { play(false); go(step); });
 listen();
 go(state.step);

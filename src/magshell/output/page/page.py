@@ -16,6 +16,7 @@ from magshell.errors import InputError
 from magshell.files import write_atomically
 from magshell.output.page.data import collect
 from magshell.output.page.facts import Facts, facts
+from magshell.output.page.steps import shown_steps
 
 if TYPE_CHECKING:
     from magshell.solver.path import Path
@@ -33,6 +34,8 @@ def write_page(
     advance: Callable[[float], None] = lambda share: None,
 ) -> pathlib.Path:
     """Write a path as one HTML file that shows itself in any browser, without a network.
+
+    Of a path that would be too large for a browser, the page shows the steps of `shown_steps`, and says so.
 
     Parameters
     ----------
@@ -74,7 +77,8 @@ def page(
     """The text of `write_page`'s file."""
     if not path.steps:
         raise InputError("the path has no converged step, so there is nothing to show")
-    data = collect(path, color, advance)
+    steps = shown_steps(path)
+    data = collect(path, steps, color, advance)
     arrays = [
         f'<script type="text/plain" id="array-{html.escape(name)}">{content}</script>'
         for name, content in data.arrays.items()
@@ -82,7 +86,7 @@ def page(
     return string.Template(_part("page.html")).substitute(
         title=html.escape(title),
         version=html.escape(version("magshell")),
-        facts=_list([*about, *facts(path)]),
+        facts=_list([*about, *facts(path, steps)]),
         style=_part("page.css"),
         header=_json(data.header),
         arrays="\n".join(arrays),
