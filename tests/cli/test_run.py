@@ -10,14 +10,13 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
 import problem_files
 import pytest
 from problem_files import changed
-from processes import hear_ctrl_c
+from processes import PATIENCE, hear_ctrl_c, until
 from rich.console import Console
 
 from magshell import problem
@@ -124,22 +123,20 @@ def test_interrupted_keeps_every_converged_step(
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to another process")
 def test_interrupt_key(tmp_path: Path) -> None:
     """Ctrl-C in the middle of a long run, with the process's own signal handling."""
-    out = tmp_path / "out"
-    command = [sys.executable, "-m", "magshell", "run", "hollow-cross", "--out", str(out)]
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    file, out = tmp_path / "long.toml", tmp_path / "out"
+    fine, steps = ("elements = [4, 1]", "elements = [20, 6]"), "[solver]\nfirst_step = 1e-3\nlargest_step = 1e-3\n"
+    file.write_text(changed(STRIP, fine) + steps)
+    command = [sys.executable, "-m", "magshell", "run", str(file), "--out", str(out)]
+    pipes = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
     with subprocess.Popen(command, **pipes, text=True, preexec_fn=hear_ctrl_c) as process:
-        end = time.monotonic() + 300
-        while not ((out / "history.csv").exists() and len(rows(out)) > 2):
-            assert process.poll() is None, process.stderr and process.stderr.read()
-            assert time.monotonic() < end, "no step in 300 s"
-            time.sleep(0.05)
+        until(lambda: (out / "history.csv").exists() and len(rows(out)) > 2, process)
         process.send_signal(signal.SIGINT)
-        _, stderr = process.communicate(timeout=60)
+        _, stderr = process.communicate(timeout=PATIENCE)
     assert process.returncode == 130, stderr
     assert "Traceback" not in stderr
     summary = json.loads((out / "summary.json").read_text())
     assert (summary["converged"], summary["reason"]) == (False, "interrupted")
-    assert summary["steps"] == len(rows(out)) - 1 >= 2
+    assert summary["steps"] - (len(rows(out)) - 1) in (0, 1), "it may come between a step and its row"
 
 
 def test_disk_that_refuses(

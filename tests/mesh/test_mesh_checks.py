@@ -279,19 +279,24 @@ def test_an_edge_group_may_walk_either_way_and_lie_inside(two):
 @pytest.mark.parametrize(
     "make",
     [
-        lambda: rectangle(1.0, 1.0, (250, 200)),
-        lambda: rectangle(1.0, 1e-3, (50000, 1)),
-        lambda: sphere_patch(1.0, (10, 170), (0, 360), (200, 250)),
+        lambda n: rectangle(1.0, 1.0, (25 * n, 20 * n)),
+        lambda n: rectangle(1.0, 1e-3, (500 * n**2, 1)),
+        lambda n: sphere_patch(1.0, (10, 170), (0, 360), (20 * n, 25 * n)),
     ],
     ids=["square", "strip", "zone"],
 )
-def test_fifty_thousand_elements_take_less_than_two_seconds(make):
+def test_time_grows_as_the_number_of_elements(make):
+    """Sixteen times as many take far less than 16² times as long."""
     rectangle(1.0, 1.0, (1, 1))  # imports scipy
-    start = time.process_time()
-    mesh = make()
-    seconds = time.process_time() - start
-    assert len(mesh.elements) == 50000
-    assert seconds < 2, f"{seconds:.2f} s"
+
+    def seconds(n):
+        start = time.process_time()
+        mesh = make(n)
+        assert len(mesh.elements) == 500 * n**2
+        return time.process_time() - start
+
+    few, many = min(seconds(2) for _ in range(3)), seconds(8)
+    assert many < 3 * 16 * few, f"{few:.3f} s, {many:.3f} s"
 
 
 def test_importing_the_mesh_does_not_import_scipy():

@@ -6,10 +6,9 @@ import os
 import signal
 import subprocess
 import sys
-import time
 
 import pytest
-from processes import hear_ctrl_c
+from processes import PATIENCE, hear_ctrl_c, is_there, until
 
 from magshell.errors import InputError, MeshError
 from magshell.mesh.files.apart import apart
@@ -41,30 +40,16 @@ def test_words_of_the_program_are_not_taken_for_the_answer(capfd):
 @pytest.mark.skipif(sys.platform == "win32", reason="no signals to another process")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
 def test_it_ends_with_the_process_that_asked(tmp_path, number):
-    code = (
-        "import os, time\nfrom magshell.mesh.files.apart import apart\n"
-        f"apart(os.system, 'echo $PPID > {tmp_path}/new; mv {tmp_path}/new {tmp_path}/asked; sleep 60',"
-        " program='gmsh', name='a.step')"
+    new, file = tmp_path / "new", tmp_path / "asked"
+    called = (
+        f"import os, pathlib, time; pathlib.Path({str(new)!r}).write_text(str(os.getpid()));"
+        f" os.rename({str(new)!r}, {str(file)!r}); time.sleep({2 * PATIENCE})"
     )
+    code = f"from magshell.mesh.files.apart import apart\napart(exec, {called!r}, program='gmsh', name='a.step')"
     command = [sys.executable, "-c", code]
     with subprocess.Popen(command, stderr=subprocess.DEVNULL, preexec_fn=hear_ctrl_c) as process:
-        until(lambda: (tmp_path / "asked").exists())
+        until(file.exists, process)
         process.send_signal(number)
-        process.wait(timeout=30)
-    asked = int((tmp_path / "asked").read_text())
+        process.wait(timeout=PATIENCE)
+    asked = int(file.read_text())
     until(lambda: not is_there(asked))
-
-
-def until(condition):
-    end = time.monotonic() + 60.0
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.02)
-
-
-def is_there(process):
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    return True
