@@ -25,6 +25,8 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.polynomial.legendre import Legendre, leggauss
 
+Fields = tuple[np.ndarray, np.ndarray, np.ndarray]
+
 
 @dataclass(frozen=True)
 class Tube:
@@ -50,17 +52,18 @@ class Tube:
 
     def side(self, harmonics: int = 24, terms: int = 24) -> float:
         """Displacement outward at ψ = 0 in the middle section, m."""
-        return sum(self._harmonic(2 * k, terms) for k in range(1, harmonics + 1))
+        points, weights = leggauss(3 * terms)
+        fields, middle = self._fields(terms, points), self._fields(terms, np.zeros(1))[2][0][:, 0]
+        return sum(float(self._harmonic(2 * k, fields, weights) @ middle) for k in range(1, harmonics + 1))
 
-    def _harmonic(self, n: int, terms: int) -> float:
-        """W_n in the middle."""
+    def _harmonic(self, n: int, fields: Fields, weights: np.ndarray) -> np.ndarray:
+        """Factors of the functions in the n-th harmonic."""
         mu, lam, R, h = self.shear_modulus, self.lame_lambda, self.radius, self.thickness
         young, poisson = mu * (3.0 * lam + 2.0 * mu) / (lam + mu), lam / (2.0 * (lam + mu))
         membrane = young * h / (1.0 - poisson**2)
         bending = membrane * h**2 / 12.0
         plane = np.array([[1.0, poisson, 0.0], [poisson, 1.0, 0.0], [0.0, 0.0, 0.5 * (1.0 - poisson)]])
-        points, weights = leggauss(3 * terms)
-        u, v, w = self._fields(terms, points)
+        u, v, w = fields
         strain = np.stack([u[1], (n * v[0] + w[0]) / R, -n * u[0] / R + v[1]])
         curvature = np.stack(
             [w[2], -(n**2 * w[0] + n * v[0]) / R**2, 2.0 * (-n * w[1] - 0.75 * v[1] - 0.25 * n * u[0] / R) / R]
@@ -73,10 +76,9 @@ class Tube:
         stiffness += self.couple_modulus * h * np.einsum("aip,ajp,p->ij", wryness, wryness, weights)
         b = 4.0 * self.couple * h / np.pi * (-1.0) ** (n // 2 + 1) * n / (n**2 - 1.0)
         scale = 1.0 / np.sqrt(np.diag(stiffness))
-        solution = scale * np.linalg.solve(stiffness * np.outer(scale, scale), -b * scale * (beta @ weights))
-        return float(solution @ self._fields(terms, np.zeros(1))[2][0][:, 0])
+        return scale * np.linalg.solve(stiffness * np.outer(scale, scale), -b * scale * (beta @ weights))
 
-    def _fields(self, terms: int, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _fields(self, terms: int, points: np.ndarray) -> Fields:
         """Of u, v, w: functions and their first two derivatives along the axis (3, functions, points)."""
         even, odd = range(0, 2 * terms, 2), range(1, 2 * terms, 2)
         every = []

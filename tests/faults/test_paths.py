@@ -185,6 +185,7 @@ def test_names_with_spaces_and_letters_of_any_kind(
 ) -> None:
     """A problem, its mesh, its table and its results, all of them with such names, through the commands."""
     monkeypatch.setattr("magshell.output.pictures.draw_pictures", lambda path, directory: [])
+    monkeypatch.setattr("magshell.output.setup.DPI", 40)
     folder = here / "Ordner mit Lücke"
     folder.mkdir()
     ms.mesh.write(ms.mesh.rectangle(20e-3, 5e-3, (4, 1)), folder / "Teil №1 ü.msh", "mm")

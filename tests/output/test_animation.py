@@ -73,7 +73,8 @@ def test_pictures_of_steps_are_named_by_their_numbers(path, tmp_path, can_draw):
     assert all(Image.open(file).size == (1600, 1120) for file in files)
 
 
-def test_video_shows_every_frame_for_its_time(path, tmp_path, can_draw):
+def test_video_shows_every_frame_for_its_time(path, tmp_path, can_draw, monkeypatch):
+    monkeypatch.setattr(animation, "FILM_DPI", 40)
     ffmpeg = pytest.importorskip("imageio_ffmpeg", reason="no video test: imageio-ffmpeg is not installed")
     file = animate(path, tmp_path / "shape.mp4")
     count, seconds = ffmpeg.count_frames_and_secs(str(file))

@@ -21,6 +21,8 @@ from magshell.output.scene import best_axes, draw, fit, viewing_axes
 from magshell.output.tessellation import Tessellation, element_edges
 from magshell.shell.shape_functions import NODES
 
+FEW = 40
+
 
 def test_surface_follows_the_tube(path):
     mesh = path.discretisation.mesh
@@ -110,17 +112,24 @@ def test_shape_is_written_or_returned(path, tmp_path, can_draw):
 
 
 @pytest.mark.parametrize("color", ["rotation", "b3", "thickness_ratio", "group", "phi", "W"])
-def test_any_output_can_colour_the_shape(path, plain_picture, color):
+def test_any_output_can_colour_the_shape(path, plain_picture, few_pixels, color):
     assert (np.asarray(draw_shape(path, None, color=color)) != plain_picture).mean() > 0.005
 
 
 @pytest.fixture(scope="module")
 def plain_picture(can_draw):
-    """The shape coloured by u3."""
-    return np.asarray(draw_shape(FakePath(), None))
+    """The shape coloured by u3, of few pixels."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("magshell.output.shape.DPI", FEW)
+        return np.asarray(draw_shape(FakePath(), None))
 
 
-def test_undeformed_state_without_field_is_drawn(path, can_draw):
+@pytest.fixture
+def few_pixels(monkeypatch):
+    monkeypatch.setattr("magshell.output.shape.DPI", FEW)
+
+
+def test_undeformed_state_without_field_is_drawn(path, few_pixels, can_draw):
     assert np.ptp(np.asarray(draw_shape(path, None, step=0))) > 0
 
 
