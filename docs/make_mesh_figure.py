@@ -69,7 +69,7 @@ def algorithms() -> tuple[str, dict[Attempt, Candidate]]:
         for attempt in ATTEMPTS:
             with session(FLOWER.name) as gmsh:
                 open_geometry(gmsh, FLOWER, FLOWER.name)
-                set_size(gmsh, 1e3 * size, ".geo")
+                set_size(gmsh, 1e3 * size, "mm", ".geo")
                 row = f"| {NAMES[attempt]} | {1e3 * size:g} mm |"
                 start = time.process_time()
                 try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import subprocess
 import sys
 import time
@@ -48,6 +49,15 @@ def test_a_sound_mesh_is_copied_and_read_only(two):
     points[0] = 7
     assert (mesh.points[0] == 0).all()
     for array in (mesh.points, mesh.elements, mesh.corner_nodes, mesh.boundary_edges, *mesh.parts):
+        assert not array.flags.writeable
+
+
+def test_a_mesh_from_another_process_is_read_only(two):
+    mesh = Mesh(*two, element_groups={"first": [0]}, node_groups={"corner": [0]})
+    assert mesh.triangles.tolist() == [False, False]
+    again = pickle.loads(pickle.dumps(mesh))
+    groups = (again.element_groups["first"], again.node_groups["corner"])
+    for array in (again.points, again.elements, again.triangles, *groups):
         assert not array.flags.writeable
 
 

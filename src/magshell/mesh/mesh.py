@@ -75,6 +75,14 @@ class Mesh:
         for kind, names in zip(("element_groups", "edge_groups", "node_groups"), checked, strict=True):
             object.__setattr__(self, kind, names)
 
+    def __setstate__(self, state: dict[str, object]) -> None:
+        """Of a pickle, which does not say that its arrays are read-only."""
+        self.__dict__.update(state)
+        for value in state.values():
+            for array in value.values() if isinstance(value, dict) else (value,):
+                if isinstance(array, np.ndarray):
+                    locked(array)
+
     def __repr__(self) -> str:
         names = ", ".join(self.groups) or "none"
         return f"Mesh({self.counts}, {len(self.points)} nodes, groups: {names})"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -28,13 +29,30 @@ def refuse():
 
 
 def test_a_crash_is_an_error():
-    with pytest.raises(InputError, match=r"^a.step: is damaged: gmsh crashes on it$"):
+    with pytest.raises(InputError, match=r"^a.step: gmsh crashes on it: it is damaged, or too large for the memory$"):
         apart(os.abort, program="gmsh", name="a.step")
 
 
 def test_words_of_the_program_are_not_taken_for_the_answer(capfd):
     assert apart(os.system, "echo a word; echo another 1>&2", program="gmsh", name="a.step") == 0
     assert tuple(capfd.readouterr()) == ("", "")
+
+
+def test_files_beside_the_user_are_not_taken_for_modules(tmp_path, monkeypatch):
+    (tmp_path / "pickle.py").write_text("raise SystemExit")
+    monkeypatch.chdir(tmp_path)
+    assert apart(divmod, 7, 2, program="gmsh", name="a.step") == (3, 1)
+
+
+def test_it_ends_quietly():
+    """Also when nobody ends it: with an abort, systems would write its memory to the user's folder."""
+    asked = pickle.dumps((divmod, (7, 2), "gmsh", "a.step"))
+    pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
+    with subprocess.Popen([sys.executable, "-m", apart.__module__], **pipes) as process:
+        process.stdin.write(asked)
+        process.stdin.flush()
+        assert pickle.loads(process.stdout.read()) == (3, 1)
+        assert process.wait() == 0
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no signals to another process")

@@ -129,7 +129,7 @@ def test_what_cannot_be_meshed(tmp_path):
         "box.geo": ("SetFactory('OpenCASCADE'); Box(1) = {0, 0, 0, 1, 1, 1};", r"holds 1 solid\(s\).*mid-surface"),
         "points.geo": ("Point(1) = {0, 0, 0};", "has no surface that could be meshed"),
         "wrong.geo": (
-            "Point(1) = {0, 0, 0\nLine(1) = {1, 7};",
+            "Point(1) = {0, 0, 0\nLine(1) = {1, 7};\n",
             r"wrong.geo: gmsh cannot do it: line 2: syntax error",
         ),
         "apart.geo": (
@@ -149,12 +149,27 @@ def test_what_cannot_be_meshed(tmp_path):
         ms.mesh.from_cad(tmp_path / "bax.geo", unit="mm")
     with pytest.raises(InputError, match=r"unit: is missing: box.geo"):
         ms.mesh.from_cad(tmp_path / "box.geo")
-    with pytest.raises(InputError, match=r"unit: is 'm', but empty.step says that its lengths are in mm"):
-        ms.mesh.from_cad(tmp_path / "empty.step", unit="m")
-    with pytest.raises(InputError, match=r"size: 1e-05 makes 2.8e\+12 elements; .* give at least 0.017"):
+    with pytest.raises(InputError, match=r"unit: empty.step says itself in which unit its lengths are"):
+        ms.mesh.from_cad(tmp_path / "empty.step", unit="inch")
+    with pytest.raises(InputError, match=r"size: 1e-05 mm makes 2.8e\+12 elements; .* give at least 0.018 mm$"):
         ms.mesh.from_cad(FLOWER, size=1e-8, unit="mm")
     with pytest.raises(InputError, match=r"size = -1.0 is not allowed"):
         ms.mesh.from_cad(tmp_path / "box.geo", size=-1.0, unit="mm")
+
+
+@needs_gmsh
+@pytest.mark.parametrize("end", ["", "\n"])
+def test_a_script_and_what_it_includes(tmp_path, end):
+    """The last line counts, also without an end; other files are sought beside the script."""
+    (tmp_path / "sizes ä.geo").write_text(f"w = 4;{end}", "utf-8")
+    (tmp_path / "part ä.geo").write_text(
+        "SetFactory('OpenCASCADE');\nInclude \"sizes ä.geo\";\nRectangle(1) = {0, 0, 0, w, 2}; "
+        f"Physical Surface('all') = {{1}};{end}",
+        "utf-8",
+    )
+    mesh = ms.mesh.from_cad(tmp_path / "part ä.geo", 1e-3, "mm")
+    assert mesh.groups == ["all"]
+    assert np.allclose(np.ptp(mesh.points, axis=0), (4e-3, 2e-3, 0.0))
 
 
 @needs_gmsh

@@ -13,7 +13,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable
-from typing import IO, TypeVar
+from typing import TypeVar
 
 from magshell.errors import InputError
 
@@ -39,11 +39,11 @@ def apart(function: Callable[..., Result], *arguments: object, program: str, nam
         What the function raises, or that the program has crashed.
     """
     with subprocess.Popen(
-        [sys.executable, "-m", __name__],
+        [sys.executable, "-P", "-m", __name__],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(part for part in sys.path if part)},
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(map(os.path.abspath, sys.path))},
     ) as process:
         assert process.stdin is not None
         assert process.stdout is not None
@@ -56,7 +56,7 @@ def apart(function: Callable[..., Result], *arguments: object, program: str, nam
     try:
         found: Result | InputError = pickle.loads(answer)
     except (EOFError, pickle.UnpicklingError):
-        raise InputError(f"{name}: is damaged: {program} crashes on it") from None
+        raise InputError(f"{name}: {program} crashes on it: it is damaged, or too large for the memory") from None
     if isinstance(found, InputError):
         raise found
     return found
@@ -65,9 +65,8 @@ def apart(function: Callable[..., Result], *arguments: object, program: str, nam
 def _main() -> None:
     """Send what a call returns, or what is wrong, to standard output, on which nobody else writes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    asked = sys.stdin.buffer
-    function, arguments, program, name = pickle.load(asked)
-    threading.Thread(target=_end_after, args=(asked,), daemon=True).start()
+    function, arguments, program, name = pickle.load(sys.stdin.buffer)
+    threading.Thread(target=_end_with_the_one_who_asked, daemon=True).start()
     with os.fdopen(os.dup(1), "wb") as answer:
         os.dup2(2, 1)
         _limit_memory()
@@ -80,9 +79,9 @@ def _main() -> None:
         answer.write(pickle.dumps(found))
 
 
-def _end_after(asked: IO[bytes]) -> None:
-    """End with the process that has asked, however it ends."""
-    asked.read()
+def _end_with_the_one_who_asked() -> None:
+    """However it ends: its end of the pipe is closed then."""
+    os.read(0, 1)
     os._exit(1)
 
 

@@ -111,7 +111,9 @@ def from_cad(file: str | os.PathLike[str], size: float | None = None, unit: str 
     textual(path)
     if size is not None and not (math.isfinite(size) and size > 0.0):
         raise InputError(f"size = {size!r} is not allowed; it must be a positive length, in m")
-    own = agreed(unit, CONVERTED if suffix in KNOWS_ITS_UNIT else None, name)
+    if suffix in KNOWS_ITS_UNIT and unit is not None:
+        raise InputError(f"unit: {name} says itself in which unit its lengths are; leave the unit out")
+    own = CONVERTED if suffix in KNOWS_ITS_UNIT else agreed(unit, None, name)
     required(name)
     return apart(_mesh, path, None if size is None else size / length_unit(own), own, program="gmsh", name=name)
 
@@ -121,7 +123,7 @@ def _mesh(path: pathlib.Path, size: float | None, unit: str) -> FileMesh:
     name, suffix = path.name, path.suffix.lower()
     with session(name) as gmsh:
         open_geometry(gmsh, path, name)
-        expected = set_size(gmsh, size, suffix)
+        expected = set_size(gmsh, size, unit, suffix)
         structured = suffix in SCRIPTS and "Transfinite" in path.read_text("utf-8", "replace")
         attempts = ATTEMPTS[STRUCTURED:] if structured else ATTEMPTS
         if expected > MANY:
@@ -152,12 +154,12 @@ def open_geometry(gmsh: Any, path: pathlib.Path, name: str) -> None:
 
 
 def _ended(path: pathlib.Path, folder: pathlib.Path) -> pathlib.Path:
-    """The file, or of a script whose last line has no end a copy in which it has: gmsh would leave that line out."""
+    """The file, or for a script whose last line has no end one that includes it: gmsh would leave that line out."""
     if path.suffix.lower() not in SCRIPTS or path.read_bytes()[-1:] in (b"\n", b""):
         return path
-    copy = folder / path.name
-    copy.write_bytes(path.read_bytes() + b"\n")
-    return copy
+    script = folder / path.name
+    script.write_text(f'Include "{path.absolute().as_posix()}";\n', "utf-8")
+    return script
 
 
 def _name_entity(gmsh: Any, dimension: int, entity: int) -> None:
@@ -169,7 +171,7 @@ def _name_entity(gmsh: Any, dimension: int, entity: int) -> None:
         gmsh.model.setPhysicalName(dimension, tag, name)
 
 
-def set_size(gmsh: Any, size: float | None, suffix: str) -> float:
+def set_size(gmsh: Any, size: float | None, unit: str, suffix: str) -> float:
     """The size of elements in the file's unit: as asked, else as the file says, else from the area.
 
     Returns
@@ -190,8 +192,8 @@ def set_size(gmsh: Any, size: float | None, suffix: str) -> float:
     if area > MOST_ELEMENTS * size**2:
         least = math.sqrt(area / MOST_ELEMENTS)
         raise InputError(
-            f"size: {size:.3g} makes {area / size**2:.2g} elements; at most {MOST_ELEMENTS:.0e} can be solved: give at "
-            f"least {least:.2g} (in the file's unit)"
+            f"size: {size:.3g} {unit} makes {area / size**2:.2g} elements; at most {MOST_ELEMENTS:.0e} can be solved: "
+            f"give at least {1.05 * least:.2g} {unit}"
         )
     option = gmsh.option.setNumber
     for fixed in ("MeshSizeFromPoints", "MeshSizeFromCurvature", "MeshSizeExtendFromBoundary"):
