@@ -129,7 +129,7 @@ def test_what_cannot_be_meshed(tmp_path):
         "box.geo": ("SetFactory('OpenCASCADE'); Box(1) = {0, 0, 0, 1, 1, 1};", r"holds 1 solid\(s\).*mid-surface"),
         "points.geo": ("Point(1) = {0, 0, 0};", "has no surface that could be meshed"),
         "wrong.geo": (
-            "Point(1) = {0, 0, 0\nLine(1) = {1, 7};\n",
+            "Point(1) = {0, 0, 0\nLine(1) = {1, 7};",
             r"wrong.geo: gmsh cannot do it: line 2: syntax error",
         ),
         "apart.geo": (
@@ -151,8 +151,11 @@ def test_what_cannot_be_meshed(tmp_path):
         ms.mesh.from_cad(tmp_path / "box.geo")
     with pytest.raises(InputError, match=r"unit: empty.step says itself in which unit its lengths are"):
         ms.mesh.from_cad(tmp_path / "empty.step", unit="inch")
-    with pytest.raises(InputError, match=r"size: 1e-05 mm makes 2.8e\+12 elements; .* give at least 0.018 mm$"):
+    with pytest.raises(InputError, match=r"size: 1e-05 mm makes 2.8e\+12 elements; .* give at least 0.017 mm$"):
         ms.mesh.from_cad(FLOWER, size=1e-8, unit="mm")
+    (tmp_path / "plate.geo").write_text("SetFactory('OpenCASCADE'); Rectangle(1) = {0, 0, 0, 2, 1};")
+    with pytest.raises(InputError, match=r"give at least 0.0015 mm$"):  # the root of 2e-6 is 0.00141
+        ms.mesh.from_cad(tmp_path / "plate.geo", size=1e-8, unit="mm")
     with pytest.raises(InputError, match=r"size = -1.0 is not allowed"):
         ms.mesh.from_cad(tmp_path / "box.geo", size=-1.0, unit="mm")
 

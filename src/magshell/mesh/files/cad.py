@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import pathlib
+import re
 import tempfile
 from typing import Any, NamedTuple
 
@@ -28,6 +29,8 @@ CONVERTED = "mm"
 IGES = (".iges", ".igs")
 """Formats in which a closed surface, as a tube, has its seam twice: the nodes there are joined."""
 SCRIPTS = (".geo", ".geo_unrolled")
+_NAMING = re.compile(rb'\b(?:Include|Merge|ShapeFromFile)\b[\s(]*"(?!/|\w:)')
+"""What stands in a script before the name of a file beside it."""
 DEFAULT_ELEMENTS = 800
 """About as many elements does a mesh have whose size nobody said."""
 MOST_ELEMENTS = 1_000_000
@@ -154,12 +157,12 @@ def open_geometry(gmsh: Any, path: pathlib.Path, name: str) -> None:
 
 
 def _ended(path: pathlib.Path, folder: pathlib.Path) -> pathlib.Path:
-    """The file, or for a script whose last line has no end one that includes it: gmsh would leave that line out."""
+    """The file, or of a script whose last line has no end a copy in which it has: gmsh would leave that line out."""
     if path.suffix.lower() not in SCRIPTS or path.read_bytes()[-1:] in (b"\n", b""):
         return path
-    script = folder / path.name
-    script.write_text(f'Include "{path.absolute().as_posix()}";\n', "utf-8")
-    return script
+    copy, beside = folder / path.name, f"{path.parent.absolute().as_posix()}/".encode()
+    copy.write_bytes(_NAMING.sub(lambda naming: naming[0] + beside, path.read_bytes()) + b"\n")
+    return copy
 
 
 def _name_entity(gmsh: Any, dimension: int, entity: int) -> None:
