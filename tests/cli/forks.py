@@ -83,7 +83,10 @@ def _end(child: int, kill: Kill | None) -> int:
 
 
 def _warm_up() -> None:
-    """Import everything, read the kernels from their cache and ask whether pictures can be drawn; draw none."""
+    """Import everything, read the kernels from their cache and ask whether pictures can be drawn; draw none.
+
+    Those of the runs have few pixels.
+    """
     import tempfile
 
     from problem_files import STRIP
@@ -91,8 +94,9 @@ def _warm_up() -> None:
     import magshell as ms
     import magshell.cli
     import magshell.output.pictures
-    from magshell.output import rendering
+    from magshell.output import curve, rendering, shape
 
+    curve.DPI = shape.DPI = 40
     with tempfile.TemporaryDirectory() as directory:
         file = Path(directory) / "problem.toml"
         file.write_text(STRIP)

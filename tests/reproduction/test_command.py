@@ -22,9 +22,8 @@ def test_interrupt_keeps_the_example_that_is_done(interrupted: Interrupted) -> N
     assert "Magnetic pump" in (interrupted.directory / "index.html").read_text()
 
 
-def test_interrupt_ends_every_process_soon(interrupted: Interrupted) -> None:
-    """Within an iteration of the run that is going on, well before its end."""
-    assert interrupted.seconds_to_end < 15.0, f"{interrupted.seconds_to_end:.1f} s"
+def test_interrupt_ends_every_process(interrupted: Interrupted) -> None:
+    """How soon: `test_runs.py`."""
     assert not interrupted.left_running
 
 

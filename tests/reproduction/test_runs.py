@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import csv
 import io
+import multiprocessing
+import signal
+import sys
+import threading
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
@@ -63,6 +67,30 @@ def test_parallel_run_is_the_same_as_a_direct_one(outcomes) -> None:
 
 def test_progress_of_every_run_is_told(outcomes) -> None:
     assert {name for name, load in outcomes[1] if load == 1.0} == {"good", "again"}
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no signal to a thread")
+def test_interrupt_ends_a_run_far_before_its_end() -> None:
+    """It comes with the first step of a thousand; no process is left."""
+    steps = "[solver]\nfirst_step = 1e-3\nlargest_step = 1e-3\n"
+    files = {"good": GOOD, "long": check(parse(STRIP + steps, "long"), "long")}
+    reached = [0.0]
+
+    def interrupting(name: str, load: float) -> None:
+        if name == "long":
+            if len(reached) == 1:
+                signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
+            reached.append(load)
+
+    kept = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            list(solve_all(files, interrupting, workers=1))
+    finally:
+        signal.signal(signal.SIGINT, kept)
+    assert len(reached) > 1
+    assert max(reached) < 0.9, reached
+    assert multiprocessing.active_children() == []
 
 
 def test_run_that_fails_is_an_outcome_with_its_reason(outcomes) -> None:
