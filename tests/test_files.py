@@ -50,3 +50,12 @@ def test_folder_that_is_a_file_is_named(tmp_path):
     (tmp_path / "taken").touch()
     with pytest.raises(OSError, match="taken"):
         write_atomically(tmp_path / "taken" / "b.txt", b"")
+
+
+def test_refused_replacement_names_the_file_not_the_one_beside_it(tmp_path):
+    folder = tmp_path / "view.html"
+    folder.mkdir()
+    with pytest.raises(IsADirectoryError) as caught:
+        write_atomically(folder, b"")
+    assert (caught.value.filename, caught.value.filename2) == (str(folder), None)
+    assert list(tmp_path.iterdir()) == [folder]

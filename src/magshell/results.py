@@ -68,6 +68,7 @@ def read(directory: str | os.PathLike[str]) -> Results:
     """
     folder = pathlib.Path(directory)
     files = checkpoint.step_files(folder)
+    require_no_sweep(folder)
     if not (folder / PROBLEM).is_file():
         raise InputError(f"{folder}: is not a results folder; one that `magshell run --out` made has a {PROBLEM}")
     if not files:
@@ -76,6 +77,21 @@ def read(directory: str | os.PathLike[str]) -> Results:
     origins: list[Origin] = []
     path = path_through(found.model, found.settings, _waypoints(found, files, origins))
     return Results(found, path, _notes(path, origins[-1]))
+
+
+def require_no_sweep(directory: pathlib.Path) -> None:
+    """Refuse the folder of a sweep, which also has a problem file.
+
+    Raises
+    ------
+    InputError
+        It is one; says what to name instead.
+    """
+    if (directory / "sweep.toml").exists():
+        raise InputError(
+            f"{directory}: is the folder of a sweep, not of a run; `magshell sweep --resume` goes on with it, and the "
+            f"results of its cells are in {directory / 'cells'}"
+        )
 
 
 def begun(directory: str | os.PathLike[str]) -> bool:

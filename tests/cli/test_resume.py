@@ -70,6 +70,21 @@ def contents(out: Path) -> dict[str, object]:
     return found
 
 
+@pytest.mark.parametrize("command", [["run", "--resume"], ["run", "strip.toml", "--out"], ["view"], ["plot"]])
+def test_folder_of_a_sweep_is_no_folder_of_a_run(
+    command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "sweep").mkdir()
+    for file in ("strip.toml", "sweep/problem.toml"):
+        Path(file).write_text(STRIP)
+    Path("sweep/sweep.toml").write_text("version = 1\n")
+    before = sorted(tmp_path.rglob("*"))
+    assert main([*command, "sweep"]) == 2
+    assert "is the folder of a sweep, not of a run; `magshell sweep --resume`" in capsys.readouterr().err
+    assert sorted(tmp_path.rglob("*")) == before
+
+
 def test_goes_on(stopped: Path, finished: Path, no_pictures: None, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "--resume", str(stopped)]) == 0
     shown = capsys.readouterr()

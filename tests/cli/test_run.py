@@ -74,6 +74,15 @@ def test_solved(strip: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
         assert words in shown.out, f"{words!r} is not in {shown.out}"
 
 
+def test_displacement_that_has_gone_again_is_zero(
+    strip: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = Path(strip).read_text().replace('stops = ["1 mT", "3 mT"]', "history = [1, 0]")
+    Path(strip).write_text(text + '\n[[stages]]\nname = "on"\n\n[[stages]]\nname = "off"\n')
+    assert main(["run", strip, "--out", str(tmp_path / "out")]) == 0
+    assert "tip: u = (0, 0, 0)" in capsys.readouterr().out
+
+
 def test_a_second_run_replaces_the_first(strip: str, tmp_path: Path) -> None:
     out = tmp_path / "out"
     assert main(["run", strip, "--out", str(out)]) == 0

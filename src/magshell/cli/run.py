@@ -59,7 +59,9 @@ def run(given: argparse.Namespace) -> int:
     """Solve, and write the results."""
     from magshell.files import remove_temporaries
     from magshell.output.lock import alone
+    from magshell.results import require_no_sweep
 
+    require_no_sweep(pathlib.Path(given.resume if given.out is None else given.out))
     if given.resume is not None:
         if given.problem is not None or given.set:
             raise InputError(
@@ -156,9 +158,9 @@ def _follow(
         return INTERRUPTED if isinstance(stop, KeyboardInterrupt) else NOT_SOLVED
     write_summary(path, directory)
     for name in problem.file.probes:
-        u = path.probe(name).u[-1]
-        noise = 1e-9 * max(map(abs, u))
-        say(out, f"{name}: u = ({', '.join(show(x if abs(x) > noise else 0.0, LENGTH) for x in u)})")
+        u = path.probe(name).u
+        noise = 1e-9 * abs(u).max()
+        say(out, f"{name}: u = ({', '.join(show(x if abs(x) > noise else 0.0, LENGTH) for x in u[-1])})")
     _say_unstable(out, path)
     for picture in draw_pictures(path, directory):
         say(out, f"picture: {picture}" if isinstance(picture, pathlib.Path) else picture)
