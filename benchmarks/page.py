@@ -16,10 +16,10 @@ import numpy as np
 
 from magshell.output.page import write_page
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "tests" / "browser"))
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "tests"))
 
-from chromium import browser, missing
-from rolled import plate, rolled
+from browser.chromium import browser, missing
+from browser.rolled import plate, rolled
 
 ELEMENTS, STEPS = (100, 50), 30
 DRAWN = """

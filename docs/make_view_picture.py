@@ -13,9 +13,9 @@ import tempfile
 from magshell.cli import main
 from magshell.files import write_atomically
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "tests" / "browser"))
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "tests"))
 
-from chromium import browser
+from browser.chromium import browser
 
 DOCS = pathlib.Path(__file__).parent
 PROBLEM, STEP = "gripper", 7

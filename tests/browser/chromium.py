@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from PIL import Image
+from processes import PATIENCE
 
 PROGRAMS = ("chromium", "chromedriver")
 FLAGS = (
@@ -55,20 +56,20 @@ class Browser:
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [scheme]})
 
-    def open(self, file: pathlib.Path, seconds: float = 30.0) -> float:
+    def open(self, file: pathlib.Path) -> float:
         """Go to a page; milliseconds from navigation until it was completely drawn for the first time."""
         self.driver.get(file.absolute().as_uri())
-        return self.until(DRAWN, seconds)
+        return self.until(DRAWN)
 
-    def until(self, script: str, seconds: float = 10.0):
+    def until(self, script: str):
         """What a script returns, once it is something."""
-        end = time.monotonic() + seconds
+        end = time.monotonic() + PATIENCE
         while time.monotonic() < end:
             result = self.driver.execute_script(script)
             if result is not None and result is not False:
                 return result
             time.sleep(0.02)
-        raise TimeoutError(f"not within {seconds:g} s: {script}; console: {self.console()}")
+        raise TimeoutError(f"not within {PATIENCE:g} s: {script}; console: {self.console()}")
 
     def do(self, script: str, *arguments):
         """Run a script that may wait; what it returns."""
@@ -103,6 +104,8 @@ def browser(width: int = 1400, height: int = 900) -> Iterator[Browser]:
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
         driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(shutil.which("chromedriver")))
         try:
+            driver.set_script_timeout(PATIENCE)
+            driver.set_page_load_timeout(PATIENCE)
             window = Browser(driver)
             window.size(width, height)
             window.requests()

@@ -233,9 +233,12 @@ def test_unstable_steps_and_critical_points_are_marked(window, path):
 
 
 def test_play_runs_through_all_steps(window):
+    window.do(
+        "window.seen = []; new MutationObserver(() => seen.push(state.step)).observe(at('step'), {childList: true});"
+    )
     window.driver.find_element(By.ID, "play").click()
-    assert window.until("return playing !== null && state.step > 1 && state.step < 8") is True
-    window.until("return playing === null")
+    window.until(f"return playing === null && state.step === {STEPS} && seen.length > 0")
+    assert window.do("return seen") == list(range(STEPS + 1))
     assert text(window, "step") == f"step {STEPS} of {STEPS}"
 
 
