@@ -86,8 +86,8 @@ def test_a_path_shows_where_it_ended(path):
     assert image.width > 900, "the curves are not there"
     assert shades(image) > 60
     text = table(shown)
-    u3 = f"{1e3 * path.probe('tip & end').u3[-1]:.4g}"
-    for part in ("yes", "|B| = 5 mT", "u of tip &amp; end", u3):
+    u1, u3 = (f"{1e3 * path.probe('tip & end').u[-1, i]:.4g}" for i in (0, 2))
+    for part in ("yes", "|B| = 5 mT", "u of tip &amp; end", f"({u1}, 0, {u3}) mm"):
         assert part in text, text
 
 

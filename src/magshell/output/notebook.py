@@ -42,7 +42,7 @@ MODE_SIZE = 0.2
 
 
 NOTHING = 1e-9
-"""Displacement, in sizes of the body, below which round-off would be drawn."""
+"""Displacement, in sizes of the body, that is round-off."""
 
 
 def mesh_html(mesh: Mesh) -> str:
@@ -158,8 +158,9 @@ def _path_rows(path: Path) -> list[tuple[str, str]]:
         points = [f"{point.kind} at load factor {point.load_factor:.4g}" for point in path.critical_points]
         rows.append(("critical points", _listed(points)))
     rows.append(("unknowns", f"{path.discretisation.dofs}, {path.solver_name}"))
+    noise = NOTHING * path.model.shell.mesh.size
     for name, node in list(path.model.probe_nodes.items())[:MOST_NAMES]:
-        u = ", ".join(f"{1e3 * value:.4g}" for value in last.state.u[node])
+        u = ", ".join(f"{1e3 * value:.4g}" if abs(value) > noise else "0" for value in last.state.u[node])
         rows.append((f"u of {name}", f"({u}) mm"))
     return rows
 
