@@ -96,7 +96,7 @@ html_theme_options = {
     "pygments_light_style": "tango",
     "pygments_dark_style": "github-dark",
 }
-html_sidebars = {"index": [], "tutorial": [], "changelog": []}
+html_sidebars = {"index": [], "tutorial": [], "layout": [], "changelog": []}
 
 
 def setup(app: Sphinx) -> None:

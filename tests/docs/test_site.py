@@ -83,6 +83,11 @@ def test_the_tutorial_was_executed(pages):
     assert "There is no group &#39;lefft&#39;" in text or "There is no group 'lefft'" in text
 
 
+def test_no_page_has_an_empty_list_of_its_section(pages):
+    empty = [name for name, text in pages.items() if 'class="bd-toc-item navbar-nav"></div>' in text]
+    assert not empty, "list them in html_sidebars of docs/conf.py"
+
+
 def test_nothing_comes_from_elsewhere(site, pages):
     loads = (
         r'<(?:script|img|iframe|source)[^>]* src="([^"]+)"|<link[^>]* rel="(?:stylesheet|preload)"[^>]* href="([^"]+)"'
