@@ -21,7 +21,14 @@ def test_read_back(tmp_path: Path) -> None:
     folder.begin(source, texts)
 
 
+def test_a_sweep_without_cells_is_replaced(folder: SweepFolder) -> None:
+    """Left by a command that found no workers."""
+    folder.begin(SOURCE, ["shell.thickness=1 mm"])
+    assert folder.read()[1] == ["shell.thickness=1 mm"]
+
+
 def test_another_sweep_is_left_alone(folder: SweepFolder) -> None:
+    folder.cells.mkdir()
     with pytest.raises(InputError, match=r'holds another sweep \(--set "shell.thickness=0.8 mm:1.2 mm:3"\)'):
         folder.begin(SOURCE, ["shell.thickness=1 mm"])
     with pytest.raises(InputError, match=r"holds the sweep of another 'strip.toml'"):

@@ -36,14 +36,14 @@ class SweepFolder:
         self.stop = self.cells / "stop"
 
     def begin(self, source: Source, settings: Sequence[str]) -> None:
-        """Note what the sweep is, or go on with one that is the same.
+        """Note what the sweep is, or go on with one that is the same; one that has no cells yet is replaced.
 
         Raises
         ------
         InputError
             The folder holds another sweep, or the results of a run.
         """
-        if self.definition.exists():
+        if self.definition.exists() and self.cells.exists():
             found, others = self.read()
             if (found.text, found.name) != (source.text, source.name):
                 raise InputError(f"--out {self.path}: holds the sweep of another '{found.name}'; name another folder")
@@ -51,7 +51,7 @@ class SweepFolder:
                 listed = " ".join(f'--set "{text}"' for text in others)
                 raise InputError(f"--out {self.path}: holds another sweep ({listed}); name another folder")
             return
-        if (self.path / "summary.json").exists() or self.problem.exists():
+        if not self.definition.exists() and ((self.path / "summary.json").exists() or self.problem.exists()):
             raise InputError(f"--out {self.path}: holds the results of a run; name another folder")
         write_atomically(self.problem, source.text.encode())
         write_atomically(self.definition, _definition(source, settings).encode())
