@@ -272,6 +272,12 @@ def test_trial_that_raises_or_hangs_becomes_a_message(impostor, monkeypatch):
         check_message(str(caught.value))
 
 
+def test_a_file_beside_the_user_is_not_taken_for_a_module(fresh_trial, tmp_path, monkeypatch):
+    (tmp_path / "pyvista.py").write_text("raise SystemExit('the file of the user')")
+    monkeypatch.chdir(tmp_path)
+    assert "the file of the user" not in rendering._trial_failure()
+
+
 @pytest.mark.skipif(ctypes.util.find_library("OSMesa") is not None, reason="OSMesa can draw here")
 def test_vtk_itself_crashing_becomes_a_message(path, tmp_path, fresh_trial, monkeypatch):
     monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", "vtkOSOpenGLRenderWindow")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from PIL import Image
 
 import magshell as ms
@@ -19,7 +20,8 @@ from magshell.output.marks import (
     support_marks,
 )
 from magshell.output.scene import viewing_axes
-from magshell.output.setup import draw_setup, tints
+from magshell.output.setup import INCHES, _legend, draw_setup, tints
+from magshell.output.style import DPI
 
 LENGTH, WIDTH = 20e-3, 6e-3
 RUBBER = ms.MicropolarNeoHookean(303e3, 7300e3, 30.3e3, 1e-4)
@@ -151,6 +153,31 @@ def test_groups_have_tints_and_a_part_of_one_piece_is_plain():
     assert len(np.unique(colours[near], axis=0)) == len(np.unique(colours[far], axis=0)) == 1
     assert (colours[near[0]] != colours[far[0]]).any()
     assert len(np.unique(tints(ms.mesh.rectangle(1, 1, (2, 2))), axis=0)) == 1
+
+
+def legend(element_groups):
+    figure = Figure(figsize=INCHES, dpi=DPI)
+    mesh = ms.mesh.rectangle(LENGTH, WIDTH, (2, 1))
+    model = strip()
+    _legend(
+        figure,
+        ms.mesh.Mesh(mesh.points, mesh.elements, element_groups),
+        remanence_marks(model, shown(model), AXES, False),
+        False,
+    )
+    figure.draw_without_rendering()
+    return figure
+
+
+def test_the_legend_has_the_groups_that_show():
+    """Of one that others cover there is no tint in the picture."""
+    figure = legend({"all": [0, 1], "left": [0], "tongue": [1]})
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["remanence, 100 mT", "left", "tongue"]
+
+
+def test_the_legend_fits():
+    figure = legend({"MAGNETISIERUNGSKLAPPENAUSSEN": [0], "lower": [1]})
+    assert figure.legends[0].get_window_extent().x1 < figure.bbox.x1
 
 
 def test_picture(tmp_path, can_draw):

@@ -31,7 +31,7 @@ def _trial_failure() -> str:
     """What went wrong with a trial picture, empty if nothing; tried once per process."""
     try:
         trial = subprocess.run(
-            [sys.executable, "-c", _TRIAL], capture_output=True, text=True, timeout=SECONDS, check=False
+            [sys.executable, "-P", "-c", _TRIAL], capture_output=True, text=True, timeout=SECONDS, check=False
         )
     except subprocess.TimeoutExpired:
         return f"it took more than {SECONDS:g} s"

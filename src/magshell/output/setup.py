@@ -47,7 +47,7 @@ LIGHT = {"ambient": 0.72, "diffuse": 0.52, "specular": 0.0}
 ELEVATION = 36.0
 AZIMUTHS = (-60.0, -45.0, -75.0, -30.0, -120.0, -135.0)
 MOST_NAMES = 8
-LETTERS_IN_A_LINE = 24
+LETTERS_IN_A_LINE = 20
 
 
 def draw_setup(
@@ -178,10 +178,21 @@ def tints(mesh: Mesh) -> AnyArray:
     from matplotlib.colors import to_rgb
 
     colours = np.tile(np.array(to_rgb(PLAIN)), (len(mesh.elements), 1))
-    if len(mesh.element_groups) > 1:
-        for number, members in enumerate(mesh.element_groups.values()):
-            colours[members] = to_rgb(TINTS[number % len(TINTS)])
+    for members, tint in _tinted(mesh).values():
+        colours[members] = to_rgb(tint)
     return np.asarray((255 * colours).round().astype(np.uint8))
+
+
+def _tinted(mesh: Mesh) -> dict[str, tuple[AnyArray, str]]:
+    """The elements in a group's tint, and the tint; of several groups the last one shows."""
+    if len(mesh.element_groups) < 2:
+        return {}
+    last = np.full(len(mesh.elements), -1)
+    for number, members in enumerate(mesh.element_groups.values()):
+        last[members] = number
+    names = list(mesh.element_groups)
+    seen = enumerate(np.unique(last[last >= 0]))
+    return {names[number]: (np.flatnonzero(last == number), TINTS[k % len(TINTS)]) for k, number in seen}
 
 
 def _place_body(plotter: Any, mesh: Mesh, shown: FloatArray, camera: Camera, size: float, template: bool) -> None:
@@ -259,9 +270,8 @@ def _legend(figure: Any, mesh: Mesh, marks: list[Mark], template: bool) -> None:
                 )
             )
             names.append(mark.name)
-    groups = list(mesh.element_groups) if len(mesh.element_groups) > 1 else []
-    for number, group in enumerate(groups[:MOST_NAMES]):
-        colour = TINTS[number % len(TINTS)]
+    groups = _tinted(mesh)
+    for group, (_, colour) in list(groups.items())[:MOST_NAMES]:
         handles.append(Line2D([], [], color=colour, marker="s", linestyle="none", markersize=11, markeredgecolor=PALE))
         names.append(group)
     if len(groups) > MOST_NAMES:
