@@ -19,7 +19,9 @@ from magshell.output.animation import draw_steps
 from magshell.output.page import page, shown_steps, steps, write_page
 from magshell.output.page.arrays import LARGEST, MISSING, quantised, span
 from magshell.output.page.facts import facts
-from magshell.output.registry import OUTPUTS, Output
+from magshell.output.registry import OUTPUTS, Output, find
+from magshell.output.shape import shown_values
+from magshell.output.tessellation import Tessellation
 from magshell.output.vtu import grid
 
 
@@ -98,6 +100,21 @@ def test_no_number_of_the_page_is_not_finite(path, monkeypatch):
     text = page(path)
     assert not re.search(r"\b(NaN|Infinity)\b", json.dumps(header(text)))
     assert (array(text, "energy", "<u2")[: len(broken)] == MISSING).sum() == len(broken[::3])
+
+
+def test_round_off_has_no_colours(path):
+    """A component that symmetry makes zero, and a shape that has gone back: noise of any pattern."""
+    noise = 1e-16 * np.random.default_rng(3).normal(size=path.steps[-1].state.u.shape)
+    for step in path.steps:
+        step.state.u[:, 1] = noise[:, 1]
+    path.steps[-1].state.u[:] = noise
+    assert (
+        abs(shown_values(path, path.steps[-1], *find("u3"), Tessellation(path.discretisation.mesh.elements))).max() == 0
+    )
+    about = next(output for output in header(page(path))["outputs"] if output["name"] == "displacement")
+    assert about["ranges"][1] == len(path.steps) * [[0, 0]]
+    assert about["ranges"][2][-1] == [0, 0]
+    assert about["ranges"][2][-2][1] > 0
 
 
 def test_interrupted_path_says_where_it_ends():

@@ -18,6 +18,7 @@ from magshell.errors import InputError, suggest
 if TYPE_CHECKING:
     from magshell.assembly import Discretisation
     from magshell.shell.state import State
+    from magshell.solver.path import Path
 
 
 @dataclass(frozen=True)
@@ -145,6 +146,12 @@ _OUTPUTS = {
     )
 }
 OUTPUTS = MappingProxyType(_OUTPUTS)
+
+
+def round_off(path: Path, output: Output) -> float:
+    """What is nothing but rounding in an output: 1e-9 of its largest component where the path is farthest from rest."""
+    farthest = max(path.steps, key=lambda step: float(np.abs(step.state.u).max()))
+    return 1e-9 * float(np.abs(output.evaluate(path.discretisation, farthest.state)).max())
 
 
 def find(name: str) -> tuple[Output, int | None]:

@@ -10,7 +10,7 @@ import numpy as np
 from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError
 from magshell.output.labels import bar_title, shown_unit
-from magshell.output.registry import Output, find
+from magshell.output.registry import Output, find, round_off
 from magshell.output.scene import draw
 from magshell.output.style import ACCENT, DPI, GREY, TEXT, TICKS, deliver
 from magshell.output.tessellation import Tessellation
@@ -104,7 +104,8 @@ def shown_values(
 ) -> FloatArray:
     """The scalar shown, in the unit of pictures, at the points of the tessellation."""
     _, factor = shown_unit(output)
-    values = np.asarray(output.evaluate(path.discretisation, step.state), dtype=float)
+    values = np.array(output.evaluate(path.discretisation, step.state), dtype=float)
+    values[np.abs(values) <= round_off(path, output)] = 0.0
     values = tessellation.at_points(values) if output.where == "point" else tessellation.on_elements(values)
     if output.components == 3:
         values = np.linalg.norm(values, axis=1) if component is None else values[:, component - 1]

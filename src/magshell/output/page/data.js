@@ -70,7 +70,9 @@ function ticks(low, high, count) {
   const values = [];
   for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i++) values.push(i * step);
   const largest = Math.max(Math.abs(low), Math.abs(high));
-  if (largest >= 1e5 || largest < 1e-3) return values.map((value) => [value, value ? value.toExponential(1) : "0"]);
+  if (largest >= 1e5 || largest < 1e-3) {
+    return values.map((value) => [value, value ? value.toExponential(1).replaceAll("-", "−") : "0"]);
+  }
   const exact = [0, 1, 2, 3, 4, 5, 6].find((places) => Math.abs(step * 10 ** places % 1) < 1e-6) ?? 6;
   return values.map((value) => [value, value.toFixed(exact).replace("-", "−")]);
 }

@@ -57,7 +57,7 @@ function showColours() {
   const largest = Math.max(Math.abs(low), Math.abs(high));
   const flat = high - low <= 1e-9 * largest;
   const both = !flat && Math.min(-low, high) > 0.1 * largest;
-  const half = 0.5 * (largest || 1);
+  const half = 0.5 * (largest || 1 / quantity.factor);
   state.range = flat ? [low - half, high + half] : both ? [-largest, largest] : [low, high];
   const map = stored(both ? "diverging" : "sequential", Uint8Array);
   if (scene) {
