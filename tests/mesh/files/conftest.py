@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import signal
 from collections.abc import Iterator
 
 import pytest
+
+from magshell.processes import let_broken_pipes_raise
 
 
 @pytest.fixture(autouse=True)
 def broken_pipes_raise() -> Iterator[None]:
     """`gmsh.initialize` lets a broken pipe end the process."""
     yield
-    if hasattr(signal, "SIGPIPE"):
-        signal.signal(signal.SIGPIPE, signal.getsignal(signal.SIGPIPE))
+    let_broken_pipes_raise()

@@ -85,8 +85,22 @@ def test_step_iges_and_brep_of_one_tube(tmp_path):
         assert off < 1e-8
         assert ends.all()
         assert np.isclose(np.ptp(mesh.points[:, 2]), 0.03, rtol=1e-9)
-        assert "surface-1" in mesh.element_groups
+        assert list(mesh.element_groups) == ["surface-1"]
         assert any(name.startswith("curve-") for name in mesh.edge_groups)
+
+
+@needs_gmsh
+def test_a_part_in_inches(tmp_path):
+    (file,) = made(tmp_path, ["plate.step"], lambda occ: occ.addRectangle(0, 0, 0, 2, 1))
+    text, millimetre = file.read_text(), "( LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT(.MILLI.,.METRE.) );"
+    assert text.count(millimetre) == 1
+    inch = f"( CONVERSION_BASED_UNIT('INCH',#900) LENGTH_UNIT() NAMED_UNIT(#901) );\n#902 = {millimetre}\n"
+    inch += "#900 = LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(25.4),#902);\n"
+    inch += "#901 = DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.);"
+    file.write_text(text.replace(millimetre, inch))
+    mesh = ms.mesh.from_cad(file, size=8e-3)
+    assert mesh.origin.unit == "mm"
+    assert np.allclose(np.ptp(mesh.points, axis=0), (50.8e-3, 25.4e-3, 0.0), rtol=1e-12)
 
 
 @needs_gmsh

@@ -15,6 +15,7 @@ from magshell.errors import InputError
 from magshell.mesh import Mesh
 from magshell.mesh.files.msh import read_msh
 from magshell.mesh.files.raising import raise_order
+from magshell.mesh.files.session import session
 from magshell.mesh.files.writing import msh
 
 from .same import MISSING, attempted, described, first_order
@@ -157,14 +158,10 @@ def shuffled(text, random):
 @needs_gmsh
 def test_gmsh_reads_what_is_written(tmp_path):
     """Elements, nodes and the sizes of all physical groups, as gmsh itself counts them."""
-    import gmsh
-
     mesh = ms.mesh.rectangle(4e-3, 3e-3, (4, 3)).select_nodes("corner", x1=0, x2=0).select_edges("low", x2=0)
     mesh = Mesh(mesh.points, mesh.elements, {"a": [0, 1, 2], "b": [2, 5]}, mesh.edge_groups, mesh.node_groups)
     ms.mesh.write(mesh, tmp_path / "plate.msh", unit="mm")
-    gmsh.initialize(readConfigFiles=False, interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
+    with session("test") as gmsh:
         gmsh.open(str(tmp_path / "plate.msh"))
         tags, positions, _ = gmsh.model.mesh.getNodes()
         assert len(tags) == len(mesh.points)
@@ -176,8 +173,6 @@ def test_gmsh_reads_what_is_written(tmp_path):
             name = gmsh.model.getPhysicalName(dimension, tag)
             entities = gmsh.model.getEntitiesForPhysicalGroup(dimension, tag)
             sizes[name] = sum(len(t) for e in entities for t in gmsh.model.mesh.getElements(dimension, e)[1])
-    finally:
-        gmsh.finalize()
     expected = {name: len(rows) for name, rows in (mesh.element_groups | mesh.edge_groups | mesh.node_groups).items()}
     assert sizes == expected
 
@@ -209,15 +204,12 @@ def test_triangles_beside_quadrilaterals(tmp_path):
 @needs_gmsh
 def test_triangles_of_gmsh(tmp_path):
     """A rectangle of quadrilaterals that touches a disc of triangles, in every format and order."""
-    import gmsh
-
     geometry = "SetFactory('OpenCASCADE');\nRectangle(1) = {0, 0, 0, 4, 2};\nDisk(2) = {2, 3, 0, 1.5};\n"
     geometry += "BooleanFragments{ Surface{1, 2}; Delete; }{}\nRecombine Surface{1};\n"
     (tmp_path / "mixed.geo").write_text(geometry)
-    gmsh.initialize(readConfigFiles=False, interruptible=False)
-    try:
-        for option, value in (("General.Terminal", 0), ("Mesh.MeshSizeMax", 0.6), ("Mesh.SecondOrderIncomplete", 1)):
-            gmsh.option.setNumber(option, value)
+    with session("test") as gmsh:
+        gmsh.option.setNumber("Mesh.MeshSizeMax", 0.6)
+        gmsh.option.setNumber("Mesh.SecondOrderIncomplete", 1)
         gmsh.open(str(tmp_path / "mixed.geo"))
         gmsh.model.mesh.generate(2)
         for order in (1, 2):
@@ -227,8 +219,6 @@ def test_triangles_of_gmsh(tmp_path):
                 gmsh.write(str(tmp_path / f"{order}-{version}.msh"))
         quads = len(gmsh.model.mesh.getElementsByType(16)[0])
         triangles = len(gmsh.model.mesh.getElementsByType(9)[0])
-    finally:
-        gmsh.finalize()
     assert min(quads, triangles) > 10
     for order in (1, 2):
         old, new = (

@@ -168,7 +168,7 @@ def _ended(path: pathlib.Path, folder: pathlib.Path) -> pathlib.Path:
 def _name_entity(gmsh: Any, dimension: int, entity: int) -> None:
     """A group by the entity's number, and one by the name that the CAD program gave it."""
     label = gmsh.model.getEntityName(dimension, entity).rpartition("/")[2]
-    own = [] if not label or label.startswith("Open CASCADE") else [label]
+    own = [] if label in ("", "FACE") or label.startswith("Open CASCADE") else [label]
     for name in (f"{GROUPED[dimension]}-{entity}", *own):
         tag = gmsh.model.addPhysicalGroup(dimension, [entity])
         gmsh.model.setPhysicalName(dimension, tag, name)
