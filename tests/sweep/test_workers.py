@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import logging
 import os
 import subprocess
 import sys
@@ -160,6 +161,7 @@ def test_a_dask_scheduler_that_goes_away(cluster: str, tmp_path: Path, monkeypat
         _ = workers.places
     workers.close()
     assert error.value.filename == cluster
+    assert not logging.getLogger("distributed.client").isEnabledFor(logging.ERROR), "tracebacks of Dask are shown"
 
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense://x", "127.0.0.1:99999999"])

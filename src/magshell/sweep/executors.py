@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import logging
 import multiprocessing
 import os
 import pathlib
@@ -102,6 +103,8 @@ class DaskWorkers:
             import distributed
         except ImportError:
             raise InputError("--dask: needs the package distributed: pip install 'magshell[dask]'") from None
+        # Its tracebacks of a connection that is lost would hide the one line that says so.
+        logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
         client: Any = distributed.Client
         try:
             self._client: Any = client(address, timeout=PATIENCE, set_as_default=False)
