@@ -33,6 +33,11 @@ def test_a_crash_is_an_error():
         apart(os.abort, program="gmsh", name="a.step")
 
 
+def test_an_end_is_no_crash():
+    with pytest.raises(InputError, match=r"^a.geo: ends gmsh before all of it is read; a script must not say Exit$"):
+        apart(os._exit, 0, program="gmsh", name="a.geo")
+
+
 def test_words_of_the_program_are_not_taken_for_the_answer(capfd):
     assert apart(os.system, "echo a word; echo another 1>&2", program="gmsh", name="a.step") == 0
     assert tuple(capfd.readouterr()) == ("", "")

@@ -150,6 +150,10 @@ def test_what_cannot_be_meshed(tmp_path):
             "SetFactory('OpenCASCADE'); Rectangle(1) = {0, 0, 0, 4, 2}; Rectangle(2) = {4, 0, 0, 2, 2};",
             "apart.geo: Elements .*Coherence",
         ),
+        "ended.geo": (
+            "SetFactory('OpenCASCADE'); Rectangle(1) = {0, 0, 0, 4, 2};\nExit;",
+            "ended.geo: ends gmsh .* Exit",
+        ),
         "empty.step": ("", r"empty.step: .*"),
         "damaged.step": ("ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\n#1=CART", r"damaged.step: .*"),
         "part.txt": ("", "part.txt: is not a geometry"),

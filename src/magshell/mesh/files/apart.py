@@ -51,11 +51,15 @@ def apart(function: Callable[..., Result], *arguments: object, program: str, nam
             process.stdin.write(pickle.dumps((function, arguments, program, name)))
             process.stdin.flush()
             answer = process.stdout.read()
+            if not answer:
+                process.wait()
         finally:
             process.kill()
     try:
         found: Result | InputError = pickle.loads(answer)
     except (EOFError, pickle.UnpicklingError):
+        if process.returncode == 0:
+            raise InputError(f"{name}: ends {program} before all of it is read; a script must not say Exit") from None
         raise InputError(f"{name}: {program} crashes on it: it is damaged, or too large for the memory") from None
     if isinstance(found, InputError):
         raise found
