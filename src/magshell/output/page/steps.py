@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from magshell.solver.path import Path, Step
 
 MOST_BYTES = 100_000_000
-"""Of the numbers in a page, if all changed in every step. Measured without a graphics card, a page of 90 MB opens in 2 s
-and takes 330 MB of memory, one of 270 MB 4 s and 640 MB, one of 520 MB 10 s and 1.1 GB."""
+"""Of the numbers in a page, if all changed in every step. Measured without a graphics card, a page of 90 MB opens in
+2 s and takes 330 MB of memory, one of 270 MB 4 s and 640 MB, one of 520 MB 10 s and 1.1 GB."""
 BYTES_PER_NUMBER = 2 * 4 / 3
 """Sixteen bits in base64."""
 
