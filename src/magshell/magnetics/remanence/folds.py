@@ -152,7 +152,7 @@ class Folded:
                 element = first_element(off > close)
                 raise InputError(
                     f"remanence: {self._named(number)}: element {element} lies {np.nanmax(off[element]):.3g} m off the "
-                    "plane through `through` normal to `towards`; only a part that is flat there can be folded"
+                    "plane through `through` normal to `towards`; only what is flat there can be folded or rolled"
                 )
             on_arc = (fold.reach(points) > close) & (fold.reach(points) < fold.arc - close)
             for later in range(number + 1, len(self.folds)):
