@@ -10,6 +10,7 @@ import signal
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from shlex import quote
 
 import numpy as np
 import problem_files
@@ -310,7 +311,7 @@ def test_disk_that_is_full(
             resource.setrlimit(resource.RLIMIT_FSIZE, before)
     shown = capsys.readouterr().err
     assert f"{out}/checkpoint/step-0003.npz: File too large; the 2 steps that converged are in {out}" in shown
-    assert f"go on with: magshell run --resume {out}" in shown
+    assert f"go on with: magshell run --resume {quote(str(out))}" in shown
     assert len(step_files(out)) == len((out / "history.csv").read_text().splitlines()) - 1 == 3
     assert main(["run", "--resume", str(out)]) == 0
     assert contents(out) == contents(finished)

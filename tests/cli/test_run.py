@@ -11,6 +11,7 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from shlex import quote
 
 import numpy as np
 import problem_files
@@ -163,7 +164,7 @@ def test_disk_that_refuses(
     full = f"{out}/history.csv: No space left on device"
     assert shown.err.splitlines() == [
         f"error: strip.toml: {full}; the 0 steps that converged are in {out}",
-        f"error: go on with: magshell run --resume {out}",
+        f"error: go on with: magshell run --resume {quote(str(out))}",
     ]
     assert f"an earlier run in {out} are replaced" in shown.out
     summary = json.loads((out / "summary.json").read_text())

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from shlex import quote
 
 import pytest
 from problem_files import STRIP
@@ -81,11 +82,11 @@ def test_the_same_command_again_solves_nothing(swept: Path, capsys: pytest.Captu
 
 def test_a_cell_that_is_not_solved(strip: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     Path(strip).write_text(STRIP + "[solver]\nmax_iterations = 1\nfirst_step = 0.1\nsmallest_step = 9e-3\n")
-    out = tmp_path / "out"
+    out = tmp_path / "the results"
     arguments = ["sweep", strip, "--set", "solver.max_iterations=1", "--out", str(out), "--workers", "1"]
     assert main(arguments) == 1
     shown = capsys.readouterr()
-    assert shown.err == f"error: 1 of 1 cells are not solved; try them again with --resume {out}\n"
+    assert shown.err == f"error: 1 of 1 cells are not solved; try them again with --resume {quote(str(out))}\n"
     assert "cell 0001 (solver.max_iterations = 1): not solved: stopped at load factor 0" in shown.out
     assert "no picture: no setting has several numbers" in shown.out
     assert rows(out)[0]["converged"] == "False"
@@ -95,7 +96,7 @@ def test_a_cell_that_is_not_solved(strip: str, tmp_path: Path, capsys: pytest.Ca
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to another process")
 def test_interrupt_key(tmp_path: Path) -> None:
     """Ctrl-C, which the terminal sends to the workers as well; what is done stays, and the rest can be gone on with."""
-    file, out = tmp_path / "strip.toml", tmp_path / "out"
+    file, out = tmp_path / "strip.toml", tmp_path / "the results"
     file.write_text(STRIP + "[solver]\nfirst_step = 1e-3\n")
     command = [sys.executable, "-m", "magshell", "sweep", str(file), "--out", str(out), "--workers", "1"]
     command += ["--set", "solver.largest_step=1,0.001"]
@@ -106,7 +107,7 @@ def test_interrupt_key(tmp_path: Path) -> None:
         os.killpg(process.pid, signal.SIGINT)
         _, stderr = process.communicate(timeout=PATIENCE)
     assert process.returncode == 130
-    assert stderr == f"error: interrupted; go on with: magshell sweep --resume {out}\n"
+    assert stderr == f"error: interrupted; go on with: magshell sweep --resume {quote(str(out))}\n"
     assert [row["converged"] for row in rows(out)] == ["True", ""]
 
 

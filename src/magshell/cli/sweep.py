@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import pathlib
+import shlex
 
 from magshell.cli.console import complain, console, say
 from magshell.cli.folders import made
@@ -53,6 +54,7 @@ def run(given: argparse.Namespace) -> int:
 
     _check(given)
     folder = SweepFolder(pathlib.Path(given.resume or given.out))
+    again = shlex.quote(str(folder.path))
     source, texts = folder.read() if given.resume else (find(given.problem), given.set)
     settings = read_settings(texts)
     out = console()
@@ -65,17 +67,17 @@ def run(given: argparse.Namespace) -> int:
         try:
             outcomes = sweep(folder, settings, cells, workers, display)
         except KeyboardInterrupt:
-            complain(f"interrupted; go on with: magshell sweep --resume {folder.path}")
+            complain(f"interrupted; go on with: magshell sweep --resume {again}")
             return INTERRUPTED
         except OSError:
-            complain(f"stopped; go on with: magshell sweep --resume {folder.path}")
+            complain(f"stopped; go on with: magshell sweep --resume {again}")
             raise
     why_not = draw_sweep(settings, cells, outcomes, folder.picture)
     say(out, f"no picture: {why_not}" if why_not else f"picture: {folder.picture}")
     failed = [cell for cell in cells if not outcomes[cell.number].converged]
     say(out, f"results: {folder.path} (sweep.csv; each cell is a folder of results in cells/)")
     if failed:
-        complain(f"{len(failed)} of {len(cells)} cells are not solved; try them again with --resume {folder.path}")
+        complain(f"{len(failed)} of {len(cells)} cells are not solved; try them again with --resume {again}")
     return NOT_SOLVED if failed else SOLVED
 
 
