@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from magshell import Path, Settings, Stage, solve
-from magshell.solver.critical import LIMIT_POINT
+from magshell.solver.critical import LIMIT_POINT, zero_between
 from solver.arches import arch, dense_tangent, sink, to_the_crown_at
 from solver.models import Record, strip
 
@@ -110,3 +112,25 @@ def test_pivots_count_while_the_load_is_taken_off() -> None:
     first, second = path.courses
     there = first.at(ours).loads[0], second.at(theirs).loads[0]
     assert there[0] == pytest.approx(there[1], rel=1e-8), "the same limit point, met from both sides"
+
+
+@given(
+    values=st.lists(
+        st.sampled_from([-2.0, -1.0, -0.0, 0.0, 0.5, 1.0]) | st.floats(-1e-3, 1e-3), min_size=2, max_size=6
+    ),
+    crossing=st.integers(1, 5),
+)
+def test_the_root_of_any_values_lies_between_the_ends(values: list[float], crossing: int) -> None:
+    """Where two are equal, as those of an element that has a mode without energy may be, as where all differ."""
+    crossing = min(crossing, len(values) - 1)
+    signed = values[:crossing] + [-value for value in values[crossing:]]
+    root = zero_between(dict(zip(np.arange(6.0).tolist(), signed, strict=False)), crossing - 1.0, float(crossing))
+    assert crossing - 1.0 <= root <= crossing, root
+
+
+def test_the_root_of_a_smooth_function() -> None:
+    """Inverse interpolation by four values is exact for a function whose inverse is cubic."""
+    at = np.array([-1.0, -0.4, 0.3, 1.1])
+    distances = 2.0 + 3.0 * at + 0.5 * at**2 + 0.7 * at**3
+    root = zero_between(dict(zip(distances.tolist(), at.tolist(), strict=True)), distances[1], distances[2])
+    assert root == pytest.approx(2.0, rel=1e-12)

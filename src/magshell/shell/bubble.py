@@ -1,14 +1,14 @@
 r"""What holds the bubble of u, and the turning field of triangles, by themselves.
 
 Reduced integration does not see one combination of the bubble with ξ² and η², that of 3ξ²η² - ξ² - η²: its derivatives
-vanish at the 2 × 2 points. It is held by an energy of the bubble's vector α (times √A, the amplitude) on the current
+vanish at the 2 × 2 points. It is held by an energy of the bubble's vector α (times ½√A, the amplitude) on the current
 tangents a_α at the element's centre,
 
     W = ½ k^αβ (α · a_α)(α · a_β) + ½ s α · α,      k^αβ = mu h A A^αβ,   s = c mu h³,
 
-A the element's area, A^αβ the reference metric at the centre. In its plane the combination is less stiff than full
-integration would make it, by 64/135 (4 + 1) = 2.4 on a square of incompressible material; out of the plane it is of the
-order of bending: there a larger stiffness would bring back the locking that the bubble removes. W is objective, since α
+A the element's area, A^αβ the reference metric at the centre. In its plane the combination is stiffer than full
+integration would make it, by 27/16 on a square of incompressible material; out of the plane it is of the order of
+bending: there a larger stiffness would bring back the locking that the bubble removes. W is objective, since α
 turns with the body, and vanishes with α.
 
 The vector of the turning field of triangles is held in its plane by the same k^αβ, with s = 0. Free there, it lets a

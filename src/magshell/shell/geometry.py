@@ -55,8 +55,8 @@ class Interpolation(NamedTuple):
     enhancement : ndarray, shape (elements, p, 3, modes)
         What the element's own parameters add to g_1, g_2, g_3. Enhanced modes: (√A at the centre / √A) f with
         ∫ f dξ dη = 0, on D or on a dual base vector of the centre, so that constant stress does no work on them; of
-        triangles the `turning_field`; the bubble of u, the last: its derivatives. In g_1 and g_2 times a length of the
-        element, so that all parameters are numbers.
+        triangles the `turning_field`; the bubble of u, the last: its derivatives. In g_1 and g_2 times half the root of
+        the element's area, so that all parameters are numbers.
     """
 
     u: FloatArray
@@ -146,7 +146,7 @@ def turning_field(element: ElementType, parent: FloatArray, node_coordinates: Fl
 
         α ⊗ Σ_i f_i ∇L_i |_centre   (J at the centre / J),    J the area per area of the parent triangle,
 
-    times a length of the element. So with it F holds all fields that are linear on the element; no nodal values make
+    times half the root of the element's area. So with it F holds all fields that are linear on the element; no nodal values make
     the same, and its integral vanishes, so that constant stress does no work on it.
     """
     functions = element.functions(8, parent, node_coordinates)

@@ -18,11 +18,11 @@ class State(NamedTuple):
     u : ndarray, shape (nodes, 3)
         Mid-surface displacement, m.
     w : ndarray, shape (nodes, 3)
-        Director displacement d - D, on corner nodes.
+        Director displacement d - D; zero at nodes that do not carry it.
     phi : ndarray, shape (nodes,)
-        Linear thickness stretch, 1/m, on corner nodes.
+        Linear thickness stretch, 1/m; zero at nodes that do not carry it.
     q : ndarray, shape (nodes, 4)
-        Micro-rotation as unit quaternions, scalar first, on corner nodes (elsewhere the identity).
+        Micro-rotation as unit quaternions, scalar first; the identity at nodes that do not carry it.
     alpha : ndarray, shape (elements, modes, 3)
         Enhanced parameters.
     """

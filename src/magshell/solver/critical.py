@@ -164,13 +164,13 @@ class _Search:
         for clearance in (COARSE_CLEARANCE * self.length, CLEARANCE * self.length):
             width = np.inf
             while high - low > 2.5 * clearance:
-                guess = _root(values, low, high) if high - low < 0.5 * width else 0.5 * (low + high)
+                guess = zero_between(values, low, high) if high - low < 0.5 * width else 0.5 * (low + high)
                 guess, width = min(max(guess, low + clearance), high - clearance), high - low
                 for distance in (guess - clearance, guess + clearance):
                     if low < distance < high:
                         values[distance] = self.least_eigenvalue(distance, first)
                         low, high = (distance, high) if values[distance] > 0.0 else (low, distance)
-        return low, high, _root(values, low, high)
+        return low, high, zero_between(values, low, high)
 
     def least_eigenvalue(self, distance: float, first: int | None) -> float:
         """Of the tangent at a distance; positive where it has the first number of negative pivots."""
@@ -206,16 +206,18 @@ class _Search:
         return Found(LIMIT_POINT, point, normalised(mode), sides)
 
 
-def _root(values: dict[float, float], low: float, high: float) -> float:
+def zero_between(values: dict[float, float], low: float, high: float) -> float:
     """Where a function vanishes between two distances: by inverse interpolation of its nearest values."""
     nearest = sorted(values, key=lambda distance: abs(distance - 0.5 * (low + high)))[:4]
-    found = 0.0
-    for one in nearest:
-        others = [other for other in nearest if other != one]
-        found += one * float(np.prod([values[other] / (values[other] - values[one]) for other in others]))
-    if low < found < high:
-        return found
-    return low + (high - low) * values[low] / (values[low] - values[high])
+    if len({values[distance] for distance in nearest}) == len(nearest):
+        found = 0.0
+        for one in nearest:
+            others = [other for other in nearest if other != one]
+            found += one * float(np.prod([values[other] / (values[other] - values[one]) for other in others]))
+        if low < found < high:
+            return found
+    drop = values[low] - values[high]
+    return low + (high - low) * values[low] / drop if drop else 0.5 * (low + high)
 
 
 def normalised(mode: FloatArray) -> FloatArray:
