@@ -146,8 +146,8 @@ def turning_field(element: ElementType, parent: FloatArray, node_coordinates: Fl
 
         α ⊗ Σ_i f_i ∇L_i |_centre   (J at the centre / J),    J the area per area of the parent triangle,
 
-    times half the root of the element's area. So with it F holds all fields that are linear on the element; no nodal values make
-    the same, and its integral vanishes, so that constant stress does no work on it.
+    times half the root of the element's area. So with it F holds all fields that are linear on the element; no nodal
+    values make the same, and its integral vanishes, so that constant stress does no work on it.
     """
     functions = element.functions(8, parent, node_coordinates)
     centre = element.functions(8, np.zeros((1, 2)), node_coordinates)
