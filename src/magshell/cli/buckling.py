@@ -55,6 +55,8 @@ def run(given: argparse.Namespace) -> int:
         magnitude = sum(component**2 for component in mode.flux_density.tolist()) ** 0.5
         field = f" ({show(magnitude, FLUX_DENSITY)})" if magnitude else ""
         say(out, f"mode {mode.number}: load factor {mode.load_factor:.6g}{field}")
+    if found.modes:
+        say(out, "estimates, good where little moves before the part buckles; a part that bends at once: magshell run")
     for picture in write_buckling(found, directory):
         say(out, f"picture: {picture}")
     say(out, f"results: {directory} (buckling.csv; buckling/ opens in ParaView)")
