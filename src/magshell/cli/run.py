@@ -61,7 +61,6 @@ def run(given: argparse.Namespace) -> int:
     from magshell.output.lock import alone
     from magshell.results import require_no_sweep
 
-    require_no_sweep(pathlib.Path(given.resume if given.out is None else given.out))
     if given.resume is not None:
         if given.problem is not None or given.set:
             raise InputError(
@@ -84,6 +83,7 @@ def run(given: argparse.Namespace) -> int:
 
         problem = load(given.problem, read_changes(given.set))
         directory = made(pathlib.Path(given.out))
+    require_no_sweep(directory)
     with alone(directory), _terminating():
         remove_temporaries(directory)
         return _new(problem, directory) if given.resume is None else _resumed(directory)
