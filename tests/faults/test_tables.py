@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from problem_files import STRIP
 
@@ -65,6 +65,7 @@ def test_measured(content: bytes, folder: Path) -> None:
 
 
 @share(0.02)
+@example(content=array().replace(b"(4, 3), }" + 18 * b" ", b"(9223372036854775808, 3), }"))
 @given(content=damaged(array()))
 def test_array(content: bytes, folder: Path) -> None:
     refused_or_vectors(content, folder / "measured.npy")

@@ -191,7 +191,8 @@ def _lines(file: pathlib.Path) -> Iterator[tuple[int, list[str]]]:
 def read_array(file: pathlib.Path) -> FloatArray:
     """An array (n, 3) of finite numbers from a `.npy` file."""
     try:
-        array = np.load(file, allow_pickle=False)
+        with np.errstate(invalid="ignore"):  # of a shape too large for an integer
+            array = np.load(file, allow_pickle=False)
     except OSError as error:
         raise InputError(_unreadable(file, error)) from None
     except (ValueError, EOFError, SyntaxError, TokenError, MemoryError) as error:
