@@ -72,6 +72,7 @@ def test_array(content: bytes, folder: Path) -> None:
 
 
 @share(0.03)
+@example(content=DISPLACED.replace(",0.005\n", ",1e308\n", 1).encode())
 @given(content=damaged(DISPLACED.encode()))
 def test_displacements(content: bytes, folder: Path) -> None:
     file = folder / "displaced.csv"

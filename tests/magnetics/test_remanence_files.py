@@ -83,6 +83,7 @@ def test_a_template_from_displacements(tmp_path):
         ("b1,b2,b3\n1,2,3\n\n1,2\n", "line 4: has 2 fields; the first line has 3"),
         ("b1,b2,b3\n1,2,x\n", "line 2: b3 is 'x', not a finite number"),
         ("b1,b2,b3\n1,nan,2\n", "line 2: b2 is 'nan', not a finite number"),
+        ("b1,b2,b3\n1,2,-1e308\n", "line 2: b3 is '-1e308', more than 1e+60"),
         ("b1;b2;b3\n1;2;3\n", "line 1: there is no column 'b1'; the columns are 'b1;b2;b3'"),
         (b"b1,b2,b3\n\xff\xfe,1,2\n", "not a text file in UTF-8"),
     ],
@@ -106,6 +107,7 @@ def test_arrays_that_are_none(tmp_path):
         (np.array([["a", "b", "c"]]), "it must be numbers"),
         (np.array([{}], dtype=object), "not an array"),
         (np.array([[1.0, np.inf, 0.0]]), "row 0 is not finite"),
+        (np.array([[1.0, 0.0, -1e308]]), "row 0 is over"),
     ):
         np.save(file, array)
         with pytest.raises(InputError, match=words):

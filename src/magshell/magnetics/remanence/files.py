@@ -27,6 +27,8 @@ PLACE = ("x1", "x2", "x3")
 FLUX = ("b1", "b2", "b3")
 DISPLACEMENT = ("u1", "u2", "u3")
 COINCIDENT = 1e-5
+LARGEST = 1e60
+"""Of numbers in a table, whatever their unit: products of a few of them are still finite."""
 
 
 def from_file(
@@ -165,9 +167,10 @@ def _row(file: pathlib.Path, number: int, fields: list[str], names: list[str], p
             value = float(fields[place])
         except ValueError:
             value = math.nan
-        if not math.isfinite(value):
+        if not abs(value) < LARGEST:
             found = units.quoted(fields[place].strip())
-            raise InputError(f"{file.name}, line {number}: {names[place]} is {found}, not a finite number")
+            fault = f"more than {LARGEST:g}" if math.isfinite(value) else "not a finite number"
+            raise InputError(f"{file.name}, line {number}: {names[place]} is {found}, {fault}")
         row.append(value)
     return row
 
@@ -200,9 +203,14 @@ def read_array(file: pathlib.Path) -> FloatArray:
     if not isinstance(array, np.ndarray) or array.dtype.kind not in "fiu" or array.ndim != 2 or array.shape[1] != 3:
         found = f"{array.dtype} of shape {array.shape}" if isinstance(array, np.ndarray) else "an archive"
         raise InputError(f"{file.name}: holds {found}; it must be numbers of shape (n, 3)")
-    if not np.isfinite(array).all():
-        raise InputError(f"{file.name}: row {np.flatnonzero(~np.isfinite(array).all(axis=1))[0]} is not finite")
-    return array.astype(float)
+    numbers = array.astype(float)
+    for allowed, fault in (
+        (np.isfinite(numbers), "is not finite"),
+        (np.abs(numbers) < LARGEST, f"is over {LARGEST:g}"),
+    ):
+        if not allowed.all():
+            raise InputError(f"{file.name}: row {np.flatnonzero(~allowed.all(axis=1))[0]} {fault}")
+    return numbers
 
 
 def _unreadable(file: pathlib.Path, error: Exception) -> str:
