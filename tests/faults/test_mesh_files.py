@@ -80,9 +80,10 @@ def refused_or_a_mesh(content: bytes, file: Path) -> None:
 
 
 @pytest.fixture(autouse=True)
-def without_gmsh(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Text that becomes another version is a fault here, not a file for gmsh."""
+def own_readers_and_little_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Text that becomes another version is a fault here, not a file for gmsh; other programs are soon ended."""
     monkeypatch.setattr("magshell.mesh.files.session.installed", lambda: False)
+    monkeypatch.setattr("magshell.mesh.files.reading.SECONDS", 15)
 
 
 @share(0.07)
@@ -117,6 +118,16 @@ def test_vtk(suffix: str, text: bool, folder: Path) -> None:
         refused_or_a_mesh(content, folder / f"part{suffix}")
 
     check()
+
+
+def test_vtk_without_end(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """VTK counts the components of a point, up to any number that the file says."""
+    monkeypatch.setattr("magshell.mesh.files.reading.SECONDS", 1)
+    whole, count = vtk(PLATE, ".vtu", True), b'NumberOfComponents="3"'
+    assert count in whole
+    (folder / "endless.vtu").write_bytes(whole.replace(count, b'NumberOfComponents="9223372036854775807"'))
+    with pytest.raises(InputError, match=r"^endless.vtu: VTK finds no end in it"):
+        read(folder / "endless.vtu", "mm")
 
 
 @share(0.005)

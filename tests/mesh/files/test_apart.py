@@ -38,6 +38,17 @@ def test_an_end_is_no_crash():
         apart(os._exit, 0, program="gmsh", name="a.geo")
 
 
+@pytest.mark.skipif(not hasattr(signal, "SIGXCPU"), reason="no limits of time")
+def test_what_finds_no_end_is_ended():
+    with pytest.raises(InputError, match=r"^a.vtu: VTK finds no end in it: it is damaged$"):
+        apart(turn_round, program="VTK", name="a.vtu", seconds=1)
+
+
+def turn_round():
+    while True:
+        pass
+
+
 def test_words_of_the_program_are_not_taken_for_the_answer(capfd):
     assert apart(os.system, "echo a word; echo another 1>&2", program="gmsh", name="a.step") == 0
     assert tuple(capfd.readouterr()) == ("", "")
@@ -51,7 +62,7 @@ def test_files_beside_the_user_are_not_taken_for_modules(tmp_path, monkeypatch):
 
 def test_it_ends_quietly():
     """Also when nobody ends it: with an abort, systems would write its memory to the user's folder."""
-    asked = pickle.dumps((divmod, (7, 2), "gmsh", "a.step"))
+    asked = pickle.dumps((divmod, (7, 2), "gmsh", "a.step", None))
     pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
     with subprocess.Popen([sys.executable, "-m", apart.__module__], **pipes) as process:
         process.stdin.write(asked)

@@ -6,6 +6,7 @@ import csv
 import math
 import os
 import pathlib
+import warnings
 from collections.abc import Iterator, Sequence
 from tokenize import TokenError
 from typing import TYPE_CHECKING
@@ -194,7 +195,8 @@ def _lines(file: pathlib.Path) -> Iterator[tuple[int, list[str]]]:
 def read_array(file: pathlib.Path) -> FloatArray:
     """An array (n, 3) of finite numbers from a `.npy` file."""
     try:
-        with np.errstate(invalid="ignore"):  # of a shape too large for an integer
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of a header that is damaged or of another age
             array = np.load(file, allow_pickle=False)
     except OSError as error:
         raise InputError(_unreadable(file, error)) from None

@@ -6,6 +6,7 @@ they leave behind and how they treat signals is nobody's concern.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import pickle
 import signal
@@ -20,7 +21,9 @@ from magshell.errors import InputError
 Result = TypeVar("Result")
 
 
-def apart(function: Callable[..., Result], *arguments: object, program: str, name: str) -> Result:
+def apart(
+    function: Callable[..., Result], *arguments: object, program: str, name: str, seconds: int | None = None
+) -> Result:
     """What a function returns that is called in another process.
 
     Parameters
@@ -32,11 +35,13 @@ def apart(function: Callable[..., Result], *arguments: object, program: str, nam
         That the function calls, for messages.
     name : str
         Of the file that it is called for, for messages.
+    seconds : int, optional
+        Of CPU time that it may take, where the system can see to that.
 
     Raises
     ------
     InputError
-        What the function raises, or that the program has crashed.
+        What the function raises, or that the program has crashed or found no end.
     """
     with subprocess.Popen(
         [sys.executable, "-P", "-m", __name__],
@@ -48,7 +53,7 @@ def apart(function: Callable[..., Result], *arguments: object, program: str, nam
         assert process.stdin is not None
         assert process.stdout is not None
         try:
-            process.stdin.write(pickle.dumps((function, arguments, program, name)))
+            process.stdin.write(pickle.dumps((function, arguments, program, name, seconds)))
             process.stdin.flush()
             answer = process.stdout.read()
             if not answer:
@@ -60,6 +65,8 @@ def apart(function: Callable[..., Result], *arguments: object, program: str, nam
     except (EOFError, pickle.UnpicklingError):
         if process.returncode == 0:
             raise InputError(f"{name}: ends {program} before all of it is read; a script must not say Exit") from None
+        if -process.returncode == getattr(signal, "SIGXCPU", None):
+            raise InputError(f"{name}: {program} finds no end in it: it is damaged") from None
         raise InputError(f"{name}: {program} crashes on it: it is damaged, or too large for the memory") from None
     if isinstance(found, InputError):
         raise found
@@ -69,11 +76,11 @@ def apart(function: Callable[..., Result], *arguments: object, program: str, nam
 def _main() -> None:
     """Send what a call returns, or what is wrong, to standard output, on which nobody else writes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    function, arguments, program, name = pickle.load(sys.stdin.buffer)
+    function, arguments, program, name, seconds = pickle.load(sys.stdin.buffer)
     threading.Thread(target=_end_with_the_one_who_asked, daemon=True).start()
     with os.fdopen(os.dup(1), "wb") as answer:
         os.dup2(2, 1)
-        _limit_memory()
+        _limit(seconds)
         try:
             found = function(*arguments)
         except InputError as error:
@@ -89,15 +96,17 @@ def _end_with_the_one_who_asked() -> None:
     os._exit(1)
 
 
-def _limit_memory() -> None:
-    """No more than the machine has: a damaged count may ask for anything."""
+def _limit(seconds: int | None) -> None:
+    """Time, and memory to what the machine has: a damaged count may ask for anything. A crash leaves no core file."""
     try:
         import resource
-
-        there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-        resource.setrlimit(resource.RLIMIT_AS, (there, resource.getrlimit(resource.RLIMIT_AS)[1]))
-    except (ImportError, ValueError, OSError):
+    except ImportError:
         return
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    for what, most in ((resource.RLIMIT_CORE, 0), (resource.RLIMIT_AS, memory), (resource.RLIMIT_CPU, seconds)):
+        if most is not None:
+            with contextlib.suppress(ValueError, OSError):
+                resource.setrlimit(what, (most, resource.getrlimit(what)[1]))
 
 
 if __name__ == "__main__":

@@ -12,6 +12,9 @@ from magshell.mesh.files.contents import Contents
 from magshell.mesh.files.paths import GEOMETRY, readable
 from magshell.mesh.files.units import agreed
 
+SECONDS, BYTES_PER_SECOND = 60, 200_000
+"""Of CPU time that another program has for a file of any size, and the least that it reads."""
+
 
 def read(file: str | os.PathLike[str], unit: str | None = None, second_order: bool = False) -> FileMesh:
     """Read a mesh with its groups.
@@ -65,7 +68,7 @@ def _contents(path: pathlib.Path, name: str) -> Contents:
         case ".vtu" | ".vtk":
             from magshell.mesh.files.vtk import read_vtk
 
-            return apart(read_vtk, path, name, program="VTK", name=name)
+            return apart(read_vtk, path, name, program="VTK", name=name, seconds=_seconds(path))
         case _:
             from magshell.mesh.files.other import read_other
 
@@ -84,4 +87,9 @@ def _msh(path: pathlib.Path, name: str) -> Contents:
             raise InputError(f"{error}; or let gmsh read it: {INSTALL}") from None
     from magshell.mesh.files.from_gmsh import read_with_gmsh
 
-    return apart(read_with_gmsh, path, name, program="gmsh", name=name)
+    return apart(read_with_gmsh, path, name, program="gmsh", name=name, seconds=_seconds(path))
+
+
+def _seconds(path: pathlib.Path) -> int:
+    """What another program has to read a file: some loop for ever on a damaged one."""
+    return SECONDS + path.stat().st_size // BYTES_PER_SECOND
