@@ -95,7 +95,8 @@ def film(path: Path, steps: Sequence[Step], color: str, dpi: int = DPI) -> Itera
     output, component = find(color)
     mesh = path.discretisation.mesh
     cells = Tessellation(mesh.elements)
-    values = {step.number: shown_values(path, step, output, component, cells) for step in steps}
+    shown = shown_values(path, steps, output, component, cells)
+    values = {step.number: each for step, each in zip(steps, shown, strict=True)}
     colours = ScalarMappable(*colour_scale(np.array([f(v) for v in values.values() for f in (np.min, np.max)])))
     shape = round(dpi * INCHES[0] * SCENE[2]), round(dpi * INCHES[1] * SCENE[3])
     camera, arrows = _look(path, steps, cells, shape)

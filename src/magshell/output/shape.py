@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError
 from magshell.output.labels import bar_title, shown_unit
-from magshell.output.registry import Output, find, round_off
+from magshell.output.registry import Output, find, without_round_off
 from magshell.output.scene import draw
 from magshell.output.style import ACCENT, DPI, GREY, TEXT, TICKS, deliver
 from magshell.output.tessellation import Tessellation
@@ -64,7 +65,7 @@ def draw_shape(
     shown = _step(path, step)
     mesh = path.discretisation.mesh
     tessellation = Tessellation(mesh.elements)
-    values = shown_values(path, shown, output, component, tessellation)
+    (values,) = shown_values(path, [shown], output, component, tessellation)
     colours = ScalarMappable(*colour_scale(values))
     rgb = colours.to_rgba(values, bytes=True)[:, :3]
     field = shown.flux_density
@@ -100,16 +101,15 @@ def colour_bar(figure: Figure, colours: ScalarMappable, title: str) -> None:
 
 
 def shown_values(
-    path: Path, step: Step, output: Output, component: int | None, tessellation: Tessellation
-) -> FloatArray:
-    """The scalar shown, in the unit of pictures, at the points of the tessellation."""
+    path: Path, steps: Sequence[Step], output: Output, component: int | None, tessellation: Tessellation
+) -> Iterator[FloatArray]:
+    """The scalar shown at each step, in the unit of pictures, at the points of the tessellation."""
     _, factor = shown_unit(output)
-    values = np.array(output.evaluate(path.discretisation, step.state), dtype=float)
-    values[np.abs(values) <= round_off(path, output)] = 0.0
-    values = tessellation.at_points(values) if output.where == "point" else tessellation.on_elements(values)
-    if output.components == 3:
-        values = np.linalg.norm(values, axis=1) if component is None else values[:, component - 1]
-    return np.asarray(factor * values)
+    for values in without_round_off(path, output, steps):
+        spread = tessellation.at_points(values) if output.where == "point" else tessellation.on_elements(values)
+        if output.components == 3:
+            spread = np.linalg.norm(spread, axis=1) if component is None else spread[:, component - 1]
+        yield np.asarray(factor * spread)
 
 
 def colour_scale(values: AnyArray) -> tuple[Any, Any]:

@@ -12,7 +12,7 @@ from magshell.output.curve import LOAD_TEXT, abscissa, displacements, load_per_m
 from magshell.output.labels import plain, shown_unit
 from magshell.output.page.arrays import quantised, span, text
 from magshell.output.page.stencils import stencils
-from magshell.output.registry import OUTPUTS, Output, find, round_off
+from magshell.output.registry import OUTPUTS, Output, find, without_round_off
 from magshell.output.scene import MOST_ELEMENTS_WITH_EDGES, best_axes
 from magshell.output.tessellation import element_edges
 
@@ -104,10 +104,7 @@ def _output(path: Path, steps: Sequence[Step], output: Output) -> tuple[dict[str
     count = output.components
     ranges: list[list[tuple[float, float]]] = [[] for _ in range(count + (count > 1))]
     codes = []
-    noise = round_off(path, output)
-    for step in steps:
-        values = np.array(output.evaluate(path.discretisation, step.state), dtype=float)
-        values[np.abs(values) <= noise] = 0.0
+    for values in without_round_off(path, output, steps):
         columns = values.reshape(len(values), count).T
         coded = [quantised(column) for column in columns]
         for found, (_, ends) in zip(ranges, coded, strict=False):
