@@ -79,7 +79,7 @@ def plane_stress_stretch(body: Body, state: State, material: Material) -> FloatA
     φ = np.zeros(body.geometry.volume.shape[:2])
     for _ in range(30):
         curvature = (slope(φ + step) - slope(φ - step)) / (2.0 * step)
-        increment = -slope(φ) / curvature
+        increment = np.divide(-slope(φ), curvature, out=np.zeros_like(φ), where=body.geometry.volume[..., 0] > 0.0)
         φ = φ + np.clip(increment, -0.3 / z[-1], 0.3 / z[-1])
         if np.abs(increment).max() * z[-1] < 1e-12:
             break

@@ -19,9 +19,11 @@ ROUND_OFF, LARGEST = 1e-13, 0.3
 def eliminate_stretch(z: float, x: FloatArray, g: FloatArray, H: FloatArray) -> bool:
     """Either move x[PHI] by a Newton step, or, where that is round-off, take φ out of g (31, 2) and H (31, 31).
 
-    z is the outermost level, where a step changes the stretch most.
+    z is the outermost level, where a step changes the stretch most. A point of weight zero has nothing to eliminate.
     """
     stiffness = H[PHI, PHI]
+    if stiffness == 0.0:
+        return True
     step = -(g[PHI, 0] + g[PHI, 1]) / stiffness
     if abs(step) * z > ROUND_OFF:
         x[PHI] += min(max(step, -LARGEST / z), LARGEST / z)

@@ -21,6 +21,7 @@ WORKSPACE = np.dtype(
         ("g", float, (3, 3)),
         ("U", float, (3, 3)),
         ("P", float, (3, 3)),
+        ("U_inverse_transpose", float, (3, 3)),
         ("S", float, (3, 3)),
         ("C", float, (3, 3, 3, 3)),
         ("C_half", float, (3, 3, 3, 3)),

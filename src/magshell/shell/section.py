@@ -32,7 +32,7 @@ from magshell.magnetics import law as coupling_laws
 from magshell.magnetics.law import Coupling
 from magshell.materials import law as material_laws
 from magshell.materials.law import Material
-from magshell.materials.tensors import inverse_transpose
+from magshell.materials.tensors import fill_inverse_transpose, inverse_transpose
 from magshell.shell.couple_stress import couple_stress
 from magshell.shell.geometry import SectionGeometry
 from magshell.shell.kinematics import base_vectors, moduli_on_legs, stress_vectors, stretch
@@ -57,6 +57,7 @@ def _forces_and_tangent(
     """Stand-in that the compiler replaces by the function of the law in use."""
 
 
+also_compiled(fill_inverse_transpose)
 also_compiled(inverse_transpose)
 choose_by_type(_stress_and_tangent, material_laws.stresses_of)
 choose_by_type(_forces_and_tangent, coupling_laws.forces_of)
@@ -164,7 +165,8 @@ def _spin_to_quaternion(w: Workspace, q: FloatArray, n2: float, c: FloatArray, H
 @inline
 def _second_stress(w: Workspace, S: FloatArray) -> None:
     """Fill S (3, 3) = U⁻¹ P."""
-    V, _ = inverse_transpose(w.U)
+    V = w.U_inverse_transpose
+    fill_inverse_transpose(w.U, V)
     for j in range(3):
         for l in range(3):
             S[j, l] = V[0, j] * w.P[0, l] + V[1, j] * w.P[1, l] + V[2, j] * w.P[2, l]
