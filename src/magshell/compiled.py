@@ -1,60 +1,40 @@
-"""Compilation of the numerical kernels: once per version of the sources, then read from a cache.
-
-Numba invalidates a cached function when *its own* file changes, not when a function that it calls does. The cache
-folder is therefore named by a digest of all sources that kernels are made of: any edit of those means a fresh cache.
-"""
+"""Compilation of the numerical kernels: once per version of the sources, then read from a cache (`kernel_cache.py`)."""
 
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import inspect
 import os
+import pathlib
 import sys
-import tempfile
 from collections.abc import Callable, Iterator
-from functools import cache
-from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
 from numba.extending import overload
 
 from magshell.files import lock
+from magshell.kernel_cache import Store, digest, log
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 LAWS = ("material", "coupling")
-KERNEL_FOLDERS = ("shell", "materials", "magnetics")
 # Sums may be reordered and fused (vector instructions), but NaN and infinity keep their meaning. Nobody calls from C.
 _OPTIONS = {"fastmath": {"reassoc", "contract", "nsz", "arcp"}, "error_model": "numpy", "no_cfunc_wrapper": True}
 _LAW_OPTIONS = _OPTIONS | {"_nrt": True}
+# By law: what `choose_by_type` compiles for it.
+_chosen: list[dict[type, Callable[..., Any]]] = []
 
 
-def _user_cache() -> Path:
+def user_cache() -> pathlib.Path | None:
+    """Folder of the compiled kernels of all versions; None where the user has no home."""
     if os.environ.get("NUMBA_CACHE_DIR"):
-        return Path(os.environ["NUMBA_CACHE_DIR"])
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local")) / "magshell"
-    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "magshell"
-
-
-@cache
-def cache_directory() -> Path:
-    """Folder of the compiled kernels of this version of the sources (in the temporary folder if none is writable)."""
-    digest = hashlib.sha256(Path(__file__).read_bytes())
-    for kernels in KERNEL_FOLDERS:
-        for source in sorted((Path(__file__).parent / kernels).glob("*.py")):
-            digest.update(source.read_bytes())
-    name = f"kernels-{digest.hexdigest()[:16]}"
-    with contextlib.suppress(OSError, RuntimeError):
-        folder = _user_cache() / name
-        folder.mkdir(parents=True, exist_ok=True)
-        if os.access(folder, os.W_OK):
-            return folder
-    folder = Path(tempfile.gettempdir()) / f"magshell-{os.getpid()}" / name
-    folder.mkdir(parents=True, exist_ok=True)
-    return folder
+        return pathlib.Path(os.environ["NUMBA_CACHE_DIR"])
+    with contextlib.suppress(RuntimeError):
+        if sys.platform == "win32":
+            return pathlib.Path(os.environ.get("LOCALAPPDATA", pathlib.Path.home() / "AppData" / "Local")) / "magshell"
+        return pathlib.Path(os.environ.get("XDG_CACHE_HOME", pathlib.Path.home() / ".cache")) / "magshell"
+    return None
 
 
 class Kernel:
@@ -78,46 +58,47 @@ class Kernel:
                 return self._compiled[laws](*arguments)
         return self._compiled[laws](*arguments)
 
-    def _folder(self, laws: tuple[type, ...]) -> Path | None:
-        """None where a law has no source file, for instance typed at a prompt."""
-        parts = []
-        for law in laws:
-            try:
-                digest = hashlib.sha256(Path(inspect.getfile(law)).read_bytes()).hexdigest()[:12]
-            except (OSError, TypeError):
-                return None
-            parts.append(f"{law.__module__}.{law.__name__}-{digest}")
-        return cache_directory().joinpath(*parts)
+    def _store(self, laws: tuple[type, ...]) -> Store:
+        """Where its machine code is kept; nowhere if it or a law has no source file, for instance typed at a prompt."""
+        name = self.py_func.__name__
+        shown = f"{name} for {' and '.join(law.__name__ for law in laws)}" if laws else name
+        root, folders = user_cache(), []
+        try:
+            version = digest(_file_of(self.py_func))
+            for law in laws:
+                functions = [chosen[law] for chosen in _chosen if law in chosen]
+                folders.append(f"{law.__module__}.{law.__name__}-{digest(*map(_file_of, (law, *functions)))}")
+        except (OSError, TypeError, SyntaxError):
+            root, version = None, ""
+        return Store(root and root / f"kernels-{version}", folders, name, shown)
 
     @contextlib.contextmanager
     def _one_process(self, laws: tuple[type, ...]) -> Iterator[None]:
         """Hold back other processes that would compile the same, until they can read it from the cache."""
-        folder = self._folder(laws)
-        if folder is None or self.is_compiled(*laws):
-            yield
-            return
-        folder.mkdir(parents=True, exist_ok=True)
-        with open(folder / f"{self.py_func.__name__}.lock", "w") as file:
-            lock(file, wait=True)
+        with contextlib.ExitStack() as until:
+            store = self._store(laws)
+            if store.folder is not None and not store.holds_any():
+                with contextlib.suppress(OSError):
+                    store.folder.mkdir(parents=True, exist_ok=True)
+                    file = until.enter_context(open(store.folder / f"{self.py_func.__name__}.lock", "w"))
+                    if not lock(file):
+                        log.info("waiting for another process that compiles the kernel %s ...", self.py_func.__name__)
+                        lock(file, wait=True)
             yield
 
     def _compile(self, laws: tuple[type, ...]) -> Callable[..., Any]:
-        options = _OPTIONS | {"nogil": True}
-        folder = self._folder(laws)
-        if folder is None:
-            return numba.njit(**options)(self.py_func)
-        folder.mkdir(parents=True, exist_ok=True)
-        previous = numba.config.CACHE_DIR
-        numba.config.CACHE_DIR = str(folder)
-        try:
-            return numba.njit(cache=True, **options)(self.py_func)
-        finally:
-            numba.config.CACHE_DIR = previous
+        dispatcher = numba.njit(**_OPTIONS, nogil=True)(self.py_func)
+        dispatcher._cache = self._store(laws)
+        compiled: Callable[..., Any] = dispatcher
+        return compiled
 
     def is_compiled(self, *laws: type) -> bool:
         """Whether it waits in the cache for these laws, so that its first call is quick."""
-        folder = self._folder(laws)
-        return folder is not None and any(folder.rglob(f"*.{self.py_func.__name__}-*.nbi"))
+        return self._store(laws).holds_any()
+
+
+def _file_of(thing: Any) -> pathlib.Path:
+    return pathlib.Path(inspect.getfile(thing))
 
 
 def allocate(function: Function) -> Function:
@@ -146,4 +127,5 @@ def choose_by_type(generic: Callable[..., Any], implementations: dict[type, Call
     def choose(law: Any, *arguments: Any) -> Callable[..., Any] | None:
         return implementations.get(getattr(law, "instance_class", type(None)))
 
+    _chosen.append(implementations)
     overload(generic, strict=False, jit_options=_LAW_OPTIONS)(choose)

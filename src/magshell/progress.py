@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import logging
 import time
+from collections.abc import Callable
 from types import TracebackType
 from typing import TYPE_CHECKING
 
@@ -11,7 +13,6 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
 from magshell.linalg import make_solver
-from magshell.shell.loops import assemble
 from magshell.solver.events import Observer
 from magshell.units import FLUX_DENSITY, show
 
@@ -21,6 +22,33 @@ if TYPE_CHECKING:
     from magshell.solver.events import Iteration
     from magshell.solver.path import Path, Step
     from magshell.solver.settings import Settings
+
+
+class KernelMessages(logging.Handler):
+    """What compilation and its cache have to say, as lines of a display."""
+
+    def __init__(self, line: Callable[..., None]) -> None:
+        super().__init__()
+        self._line, self._logger = line, logging.getLogger("magshell.kernels")
+
+    def listen(self) -> None:
+        """Begin; messages go nowhere else meanwhile."""
+        self._logger.setLevel(logging.INFO)
+        self._logger.propagate = False
+        self._logger.addHandler(self)
+
+    def stop(self) -> None:
+        """End."""
+        self._logger.removeHandler(self)
+        self._logger.propagate = True
+        self._logger.setLevel(logging.NOTSET)
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Show a message."""
+        if record.levelno >= logging.WARNING:
+            self._line(f"warning: {record.getMessage()}", style="yellow")
+        else:
+            self._line(record.getMessage())
 
 
 class ProgressDisplay(Observer):
@@ -51,9 +79,11 @@ class ProgressDisplay(Observer):
             disable=not self._live,
         )
         self._task = self._bar.add_task("preparing", total=1.0)
+        self._messages = KernelMessages(self._line)
 
     def __enter__(self) -> ProgressDisplay:
         self._began = time.monotonic()
+        self._messages.listen()
         self._bar.start()
         return self
 
@@ -61,16 +91,14 @@ class ProgressDisplay(Observer):
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._bar.stop()
+        self._messages.stop()
 
     def started(self, discretisation: Discretisation, settings: Settings) -> None:
-        """Name the size and the linear solver; say so if the kernels must be compiled first."""
+        """Name the size and the linear solver."""
         self._stages = discretisation.model.stages
         elements, unknowns = len(discretisation.mesh.elements), discretisation.dofs
         solver = make_solver(settings.linear_solver).name
         self._line(f"{elements} elements, {unknowns} unknowns, linear solver: {solver}")
-        model = discretisation.model
-        if not assemble.is_compiled(type(model.shell.material), type(model.coupling)):
-            self._line("compiling the kernels for the first use of this version (about a minute) ...")
 
     def resumed(self, path: Path) -> None:
         """Say how far the path is already."""
@@ -131,8 +159,8 @@ class ProgressDisplay(Observer):
             return _percent(at.load_factor)
         return f"{_percent(at.load_factor)} of {self._stages[at.stage].name or f'stage {at.stage + 1}'}"
 
-    def _line(self, text: str) -> None:
-        self._console.print(text, soft_wrap=True)
+    def _line(self, text: str, style: str | None = None) -> None:
+        self._console.print(text, style=style, soft_wrap=True)
 
 
 def _percent(load_factor: float) -> str:

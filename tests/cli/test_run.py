@@ -22,6 +22,7 @@ from rich.console import Console
 
 from magshell import problem
 from magshell.cli import main
+from magshell.kernel_cache import log
 from magshell.output.history import HistoryWriter
 from magshell.progress import ProgressDisplay
 from magshell.solver import Step, solve
@@ -171,24 +172,28 @@ def test_disk_that_refuses(
     assert (summary["converged"], summary["reason"]) == (False, full)
 
 
-def test_progress_on_a_terminal(strip: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("magshell.compiled.Kernel.is_compiled", lambda kernel, *laws: False)
+def test_progress_on_a_terminal(strip: str) -> None:
     text = io.StringIO()
     display = ProgressDisplay(Console(file=text, force_terminal=True, width=160))
     with display:
+        log.info("compiling a kernel ...")
+        log.warning("the folder is damaged")
         path = solve(problem.load(strip).model, observers=[display])
         display.cut(0.5, "too bold")
     assert display.path is path
     shown = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", text.getvalue())
     for words in (
         "linear solver",
-        "compiling the kernels",
+        "compiling a kernel ...",
+        "warning: the folder is damaged",
         "100%",
         "cut: too bold",
         "solved at 100 % (5 mT)",
     ):
         assert words in shown, f"{words!r} is not in {shown!r}"
     assert not re.search(r"step 1  \d", shown), "no line per step on a terminal"
+    log.info("after the end")
+    assert "after the end" not in text.getvalue()
 
 
 def test_set(strip: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

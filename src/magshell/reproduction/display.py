@@ -8,6 +8,8 @@ from types import TracebackType
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
+from magshell.progress import KernelMessages
+
 
 class Display:
     """A bar for each run, used as a context.
@@ -33,9 +35,11 @@ class Display:
         )
         names = list(names)
         width = max(map(len, names))
+        self._messages = KernelMessages(self.say)
         self._tasks = {name: self._bars.add_task(name.ljust(width), total=1.0, start=False) for name in names}
 
     def __enter__(self) -> Display:
+        self._messages.listen()
         self._bars.start()
         return self
 
@@ -43,6 +47,7 @@ class Display:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._bars.stop()
+        self._messages.stop()
 
     def reached(self, name: str, load_factor: float) -> None:
         """Move a run's bar; may be called from any thread."""

@@ -14,9 +14,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from magshell.assembly import Discretisation
 from magshell.errors import InputError, SolveError
+from magshell.kernel_cache import log
 from magshell.linalg import nested_dissection
 from magshell.problem.building import build
 from magshell.processes import cores, interrupts_wait
+from magshell.shell.loops import are_compiled
 from magshell.solver.critical import CriticalPoint
 from magshell.solver.events import Iteration, Observer
 from magshell.solver.path import Path, Step
@@ -70,6 +72,9 @@ def solve_all(
     Outcome
     """
     problems = {name: build(file, name) for name, file in files.items()}
+    laws = {(type(problem.model.shell.material), type(problem.model.coupling)) for problem in problems.values()}
+    if not all(are_compiled(*pair) for pair in laws):
+        log.info("compiling the kernels for the first use of this version (about a minute) ...")
     by_size = sorted(problems, key=lambda name: len(problems[name].model.shell.mesh.elements))
     context = multiprocessing.get_context("spawn")
     messages, stop = context.Queue(), context.Event()

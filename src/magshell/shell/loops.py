@@ -399,3 +399,15 @@ def predict_stresses(
             point_values(shape, e, p, layout, v, x)
             point_values(shape, e, p, layout, dv, dx)
             predicted_stress(material, geometry, e, p, x, dx, w, stresses.S[e, p], stresses.kappa[e, p])
+
+
+def are_compiled(material: type, coupling: type) -> bool:
+    """Whether all kernels of a solve wait in the cache for these laws."""
+    return all(
+        kernel.is_compiled(*laws)
+        for kernel, laws in (
+            (assemble, (material, coupling)),
+            (predict_stresses, (material,)),
+            (recover_enhancement, ()),
+        )
+    )

@@ -79,9 +79,9 @@ def sweep(
 
 def _compiling_first(cells: Sequence[Cell]) -> tuple[list[Cell], list[Cell]]:
     """The first cell of each pair of laws that kernels must be compiled for, and the other cells."""
-    from magshell.shell.loops import assemble
+    from magshell.shell.loops import are_compiled
 
-    first = {cell.laws: cell for cell in reversed(cells) if not assemble.is_compiled(*cell.laws)}
+    first = {cell.laws: cell for cell in reversed(cells) if not are_compiled(*cell.laws)}
     ahead = [cell for cell in cells if first.get(cell.laws) is cell]
     return ahead, [cell for cell in cells if cell not in ahead]
 
