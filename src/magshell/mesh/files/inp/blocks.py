@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from magshell.arrays import FloatArray, IntArray
+from magshell.arrays import FloatArray
 from magshell.errors import suggest
 from magshell.mesh.files.cells import Kind
 from magshell.mesh.files.inp.frames import from_cylindrical
@@ -40,7 +40,8 @@ def read_nodes(lines: Lines, keyword: Keyword, scope: Scope) -> None:
     coordinates = np.zeros((len(found), 3))
     coordinates[:, : found.shape[1] - 1] = found[:, 1:4]
     numbers = found[:, 0].astype(np.int64)
-    add_nodes(scope, numbers, positions(lines, keyword.line, given, coordinates, scope), np.array(keyword.rows))
+    points = positions(lines, keyword.line, given, coordinates, scope)
+    scope.nodes.append(Nodes(numbers, points, np.array(keyword.rows, dtype=np.int64)))
     if "NSET" in given:
         new_set(lines, keyword, given["NSET"], scope.node_sets).add(numbers)
 
@@ -52,11 +53,6 @@ def _node(lines: Lines, line: int) -> list[float]:
         lines.fail(line, f"expected {what}, found '{shortened(lines.text(line))}'")
     number = whole(lines, line, fields[0], what)
     return [number, *([real(lines, line, field, what) for field in fields[1:4]] + [0.0, 0.0, 0.0])[:3]]
-
-
-def add_nodes(scope: Scope, numbers: IntArray, points: FloatArray, lines: IntArray) -> None:
-    """Add nodes that stand in these lines."""
-    scope.nodes.append(Nodes(numbers, points, lines))
 
 
 def positions(lines: Lines, line: int, given: Mapping[str, str], coordinates: FloatArray, scope: Scope) -> FloatArray:
@@ -82,14 +78,14 @@ def read_elements(lines: Lines, keyword: Keyword, scope: Scope) -> None:
         block: Elements | Skipped = _elements(lines, keyword, type_name, kind)
         scope.elements += [block] if isinstance(block, Elements) and len(block.numbers) else []
     else:
-        block = _skipped(lines, keyword, type_name)
+        block = _skipped(lines, keyword, shortened(type_name))
         count = len(block.numbers)
         if kind == "solid":
             scope.solids += count
-        elif kind == "unknown":
-            name = shortened(type_name)
-            scope.unknown |= {name: scope.unknown.get(name, 0) + count} if count else {}
-        scope.skipped.append(block)
+        elif kind == "unknown" and count:
+            scope.unknown[block.type_name] = scope.unknown.get(block.type_name, 0) + count
+        elif count:
+            scope.skipped.append(block)
     if "ELSET" in given:
         new_set(lines, keyword, given["ELSET"], scope.element_sets).add(block.numbers)
 

@@ -8,10 +8,11 @@ from dataclasses import dataclass, field
 from magshell.errors import InputError, suggest
 from magshell.mesh.files.contents import Contents
 from magshell.mesh.files.inp.blocks import read_elements, read_nodes, read_set, read_surface
-from magshell.mesh.files.inp.flattening import Placed, flattened
+from magshell.mesh.files.inp.flattening import flattened
 from magshell.mesh.files.inp.frames import frame, move
 from magshell.mesh.files.inp.generators import copy_elements, copy_nodes, fill_nodes, generate_elements, generate_nodes
 from magshell.mesh.files.inp.keywords import Keyword, key, keywords, lookup, parameters, reals, shown
+from magshell.mesh.files.inp.numbering import Placed
 from magshell.mesh.files.inp.scope import Scope
 from magshell.mesh.files.lines import Lines
 from magshell.units import shortened
@@ -31,7 +32,6 @@ _REFUSED = {
     "IMPERFECTION": "imperfections are not read: write the coordinates of the imperfect shell",
     "IMPORT": "models of other analyses are not read: write the nodes and elements themselves",
     "SYMMETRICMODELGENERATION": "models are not generated of others: write the nodes and elements themselves",
-    "PARAMETER": "parameters are not evaluated: write the numbers themselves",
 }
 """What would change the mesh."""
 _SECTIONS = ("SHELLSECTION", "SHELLGENERALSECTION", "MEMBRANESECTION")

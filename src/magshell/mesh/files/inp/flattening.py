@@ -4,20 +4,18 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
-from functools import cached_property
-from typing import NoReturn, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
-from magshell.arrays import FloatArray, IntArray
+from magshell.arrays import IntArray
 from magshell.errors import InputError
 from magshell.mesh.edges import SIDES
 from magshell.mesh.files.cells import LINE2, LINE3, MISSING, Kind
-from magshell.mesh.files.contents import Block, Contents, in_order, places
+from magshell.mesh.files.contents import Block, Contents
 from magshell.mesh.files.inp.blocks import members
-from magshell.mesh.files.inp.frames import Move
-from magshell.mesh.files.inp.scope import NamedSet, Numbers, Scope, Surface
+from magshell.mesh.files.inp.numbering import Numbered, Placed, Rows, among, distinct
+from magshell.mesh.files.inp.scope import NamedSet, Numbers, Surface
 from magshell.mesh.files.inp.types import is_plane
 from magshell.mesh.files.lines import Lines
 from magshell.units import shortened
@@ -37,99 +35,6 @@ _TRIANGLE_SIDES = (0, 1, 3)
 T = TypeVar("T", NamedSet, Surface)
 
 
-@dataclass(frozen=True)
-class Placed:
-    """A scope where it is: an instance, moved, or the assembly."""
-
-    scope: Scope
-    move: Move | None = None
-
-
-@dataclass(frozen=True)
-class _Rows:
-    """All elements of one type in a scope."""
-
-    type_name: str
-    kind: Kind
-    numbers: IntArray
-    nodes: IntArray
-    """Rows of all nodes of the mesh."""
-    groups: dict[str, IntArray] = field(default_factory=dict)
-
-
-class _Numbered:
-    """A scope with its nodes and elements by number."""
-
-    def __init__(self, lines: Lines, placed: Placed, start: int) -> None:
-        self.lines, self.scope, self.start = lines, placed.scope, start
-        blocks = self.scope.nodes
-        where = np.concatenate([np.zeros(0, dtype=np.int64), *(block.lines for block in blocks)])
-        numbers = np.concatenate([np.zeros(0, dtype=np.int64), *(block.numbers for block in blocks)])
-
-        def twice(row: int) -> NoReturn:
-            lines.fail(int(where[row]), f"node {numbers[row]} is given a second time")
-
-        points = np.concatenate([np.zeros((0, 3)), *(block.points for block in blocks)])
-        self.node_numbers, points = in_order(numbers, points, twice)
-        self.points: FloatArray = points if placed.move is None else placed.move(points)
-        self._refuse_repeated()
-        self.rows = [self._rows(name) for name in dict.fromkeys(block.type_name for block in self.scope.elements)]
-
-    def _refuse_repeated(self) -> None:
-        blocks = self.scope.every
-        if not blocks:
-            return
-        numbers = np.concatenate([block.numbers for block in blocks])
-        where = np.concatenate([block.lines for block in blocks])
-        order = np.lexsort((where, numbers))
-        same = np.flatnonzero(numbers[order][1:] == numbers[order][:-1])
-        if same.size:
-            first, second = order[same[0]], order[same[0] + 1]
-            self.lines.fail(
-                int(where[second]), f"element {numbers[second]} is given a second time; line {where[first] + 1} has it"
-            )
-
-    def _rows(self, type_name: str) -> _Rows:
-        """The elements of a type by number."""
-        blocks = [block for block in self.scope.elements if block.type_name == type_name]
-        numbers = np.concatenate([block.numbers for block in blocks])
-        nodes = np.concatenate([block.nodes for block in blocks])
-
-        def missing(row: int, number: int) -> NoReturn:
-            where = np.concatenate([block.lines for block in blocks])
-            of = f" of '{shortened(self.scope.name)}'" if self.scope.name else ""
-            self.lines.fail(int(where[row]), f"element {numbers[row]} has node {number}, which no *NODE block{of} has")
-
-        found = places(self.node_numbers, nodes, missing)
-        order = np.argsort(numbers, kind="stable")
-        return _Rows(type_name, blocks[0].kind, numbers[order], self.start + found[order])
-
-    @cached_property
-    def skipped(self) -> IntArray:
-        """Numbers of the elements that are left out, rising."""
-        return np.sort(np.concatenate([np.zeros(0, dtype=np.int64), *(each.numbers for each in self.scope.skipped)]))
-
-
-def _distinct(numbers: Numbers) -> Numbers:
-    """Each number once, rising. (`numpy.unique` hashes whole numbers, which takes ten times as long.)"""
-    if isinstance(numbers, range):
-        return numbers
-    ordered = np.sort(numbers)
-    return ordered[np.concatenate([[True], ordered[1:] != ordered[:-1]])] if len(ordered) else ordered
-
-
-def _among(known: IntArray, numbers: Numbers) -> IntArray:
-    """Where the numbers that are known stand in `known`; both rise."""
-    if isinstance(numbers, range):
-        first, last = np.searchsorted(known, [numbers.start, numbers.stop])
-        inside = np.arange(first, last)
-        return inside[(known[inside] - numbers.start) % numbers.step == 0]
-    if not len(known):
-        return np.zeros(0, dtype=np.int64)
-    found = np.searchsorted(known, numbers).clip(max=len(known) - 1)
-    return found[known[found] == numbers]
-
-
 def flattened(lines: Lines, instances: Mapping[str, Placed], assembly: Placed, notes: list[str]) -> Contents:
     """One mesh of the instances, in their order, and the assembly's own nodes and elements.
 
@@ -142,16 +47,17 @@ def flattened(lines: Lines, instances: Mapping[str, Placed], assembly: Placed, n
     total = sum(len(block.numbers) for placed in every.values() for block in placed.scope.nodes)
     if total > _LARGEST:
         raise InputError(f"{lines.name}: all instances have {total} nodes together; {_LARGEST} can be read")
-    numbered: dict[str, _Numbered] = {}
+    numbered: dict[str, Numbered] = {}
     start = 0
     for name, placed in every.items():
-        numbered[name] = _Numbered(lines, placed, start)
+        numbered[name] = Numbered(lines, placed, start)
         start += len(numbered[name].points)
     skipped = Counter[str]()
     unknown = Counter[str]()
     for placed in every.values():
         unknown.update(placed.scope.unknown)
-        skipped.update({shortened(each.type_name): len(each.numbers) for each in placed.scope.skipped})
+        for block in placed.scope.skipped:
+            skipped[block.type_name] += len(block.numbers)
     groups = _Groups(lines, numbered, notes)
     node_groups = groups.of_nodes()
     groups.of_elements()
@@ -162,7 +68,7 @@ def flattened(lines: Lines, instances: Mapping[str, Placed], assembly: Placed, n
         for rows in each.rows:
             blocks.append(Block(rows.kind, count + np.searchsorted(numbers, rows.numbers), rows.nodes, rows.groups))
         count += len(numbers)
-    left = [f"{number} elements of type {name} left out" for name, number in skipped.items() if name not in unknown]
+    left = [f"{number} elements of type {name} left out" for name, number in skipped.items()]
     return Contents(
         np.concatenate([each.points for each in numbered.values()]),
         [*blocks, *edges],
@@ -176,7 +82,7 @@ def flattened(lines: Lines, instances: Mapping[str, Placed], assembly: Placed, n
 class _Groups:
     """The groups that sets and surfaces become."""
 
-    def __init__(self, lines: Lines, numbered: Mapping[str, _Numbered], notes: list[str]) -> None:
+    def __init__(self, lines: Lines, numbered: Mapping[str, Numbered], notes: list[str]) -> None:
         self.lines, self.numbered, self.notes = lines, numbered, notes
         self.scopes = {name: each.scope for name, each in numbered.items() if name}
         self.taken: set[tuple[int, str]] = set()
@@ -196,10 +102,10 @@ class _Groups:
         rows, lost = [np.zeros(0, dtype=np.int64)], 0
         for part, numbers in pieces:
             each = self.numbered[part]
-            found = _among(each.node_numbers, distinct := _distinct(numbers))
-            lost += len(distinct) - len(found)
+            found = among(each.node_numbers, wanted := distinct(numbers))
+            lost += len(wanted) - len(found)
             rows.append(each.start + found)
-        return np.asarray(_distinct(np.concatenate(rows))), lost
+        return np.asarray(distinct(np.concatenate(rows))), lost
 
     def of_elements(self) -> None:
         """Element sets as groups of the rows."""
@@ -218,23 +124,23 @@ class _Groups:
             for rows, inside in chosen:
                 rows.groups[names[rows.kind.dimension]] = inside
 
-    def _elements(self, pieces: list[tuple[str, Numbers]]) -> tuple[list[tuple[_Rows, IntArray]], int, int]:
+    def _elements(self, pieces: list[tuple[str, Numbers]]) -> tuple[list[tuple[Rows, IntArray]], int, int]:
         """Rows of the elements, how many are left out, and how many there are not."""
-        collected: dict[int, tuple[_Rows, list[IntArray]]] = {}
+        collected: dict[int, tuple[Rows, list[IntArray]]] = {}
         skipped = lost = 0
         for part, numbers in pieces:
             each = self.numbered[part]
-            distinct = _distinct(numbers)
-            out = len(_among(each.skipped, distinct))
-            lost += len(distinct) - out
+            wanted = distinct(numbers)
+            out = len(among(each.skipped, wanted))
+            lost += len(wanted) - out
             skipped += out
             for rows in each.rows:
-                inside = _among(rows.numbers, distinct)
+                inside = among(rows.numbers, wanted)
                 lost -= len(inside)
                 if len(inside):
                     collected.setdefault(id(rows), (rows, []))[1].append(inside)
         return (
-            [(rows, np.asarray(_distinct(np.concatenate(inside)))) for rows, inside in collected.values()],
+            [(rows, np.asarray(distinct(np.concatenate(inside)))) for rows, inside in collected.values()],
             skipped,
             lost,
         )
@@ -242,42 +148,43 @@ class _Groups:
     def of_surfaces(self, node_groups: dict[str, IntArray]) -> list[Block]:
         """Surfaces as groups of nodes, of the rows, and of edges, which are returned."""
         blocks: list[Block] = []
-        surfaces = {name: each.scope.surfaces for name, each in self.numbered.items()}
-        for owner, name, surface in self._named(surfaces):
+        for owner, name, surface in self._named({owner: each.scope.surfaces for owner, each in self.numbered.items()}):
             pieces = [
-                (face, line, [(part or owner, numbers) for part, numbers in self._members(owner, surface, text, line)])
+                (face, [(part or owner, numbers) for part, numbers in self._members(owner, surface, text, line)])
                 for text, face, line in surface.members
                 if text
             ]
             if surface.of_nodes:
-                node_groups[self._free(0, name)] = np.unique(
-                    np.concatenate([np.zeros(0, np.int64), *(self._nodes(each)[0] for *_, each in pieces)])
-                )
-                continue
-            faces: dict[int, tuple[_Rows, list[IntArray]]] = {}
-            edges: list[IntArray] = []
-            unread: set[str] = set()
-            for face, _, each in pieces:
-                for rows, inside in self._elements(each)[0]:
-                    plane = is_plane(rows.type_name)
-                    side = (_PLANE_EDGES if plane else _SHELL_EDGES).get(face)
-                    if rows.kind.dimension == 2 and side is not None and side < _sides(rows.kind):
-                        edges.append(_edges(rows, inside, side))
-                    elif rows.kind.dimension == 2 and face in _FACES and not plane:
-                        faces.setdefault(id(rows), (rows, []))[1].append(inside)
-                    else:
-                        unread.add(shortened(face) or "without a face")
-            if unread:
-                self.notes.append(f"surface '{shortened(name)}': left out {', '.join(sorted(unread))}")
-            if faces:
-                free = self._free(2, name)
-                for rows, lists in faces.values():
-                    rows.groups[free] = np.unique(np.concatenate(lists))
-            if edges:
-                blocks += _edge_blocks(np.concatenate(edges), self._free(1, name))
-            if not faces and not edges and not unread:
-                self.notes.append(f"group '{shortened(name)}' left out, as it has no element")
+                rows = [np.zeros(0, dtype=np.int64), *(self._nodes(each)[0] for _, each in pieces)]
+                node_groups[self._free(0, name)] = np.unique(np.concatenate(rows))
+            else:
+                blocks += self._surface(name, pieces)
         return blocks
+
+    def _surface(self, name: str, pieces: list[tuple[str, list[tuple[str, Numbers]]]]) -> Iterator[Block]:
+        """The group of the elements whose faces a surface has; the edges it has."""
+        faces: dict[int, tuple[Rows, list[IntArray]]] = {}
+        edges: list[IntArray] = []
+        unread: set[str] = set()
+        for face, inside_ in pieces:
+            for rows, inside in self._elements(inside_)[0]:
+                plane = is_plane(rows.type_name)
+                side = (_PLANE_EDGES if plane else _SHELL_EDGES).get(face)
+                if rows.kind.dimension == 2 and side is not None and side < _sides(rows.kind):
+                    edges.append(_edges(rows, inside, side))
+                elif rows.kind.dimension == 2 and face in _FACES and not plane:
+                    faces.setdefault(id(rows), (rows, []))[1].append(inside)
+                else:
+                    unread.add(f"{rows.kind.name} with {_quoted_face(face)}")
+        if unread:
+            self.notes.append(f"surface '{shortened(name)}': left out {', '.join(sorted(unread))}")
+        elif not faces and not edges:
+            self.notes.append(f"group '{shortened(name)}' left out, as it has no element")
+        free = self._free(2, name) if faces else ""
+        for rows, lists in faces.values():
+            rows.groups[free] = np.unique(np.concatenate(lists))
+        if edges:
+            yield from _edge_blocks(np.concatenate(edges), self._free(1, name))
 
     def _members(self, owner: str, surface: Surface, text: str, line: int) -> list[tuple[str, Numbers]]:
         kind = "NSET" if surface.of_nodes else "ELSET"
@@ -306,11 +213,15 @@ class _Groups:
             self.notes.append(f"{lost} members of group '{shortened(name)}' left out, which there are not")
 
 
+def _quoted_face(face: str) -> str:
+    return f"face '{shortened(face)}'" if face else "no face"
+
+
 def _sides(kind: Kind) -> int:
     return 3 if kind.row[2] == kind.row[3] else 4
 
 
-def _edges(rows: _Rows, inside: IntArray, side: int) -> IntArray:
+def _edges(rows: Rows, inside: IntArray, side: int) -> IntArray:
     """End, end and middle (n, 3) of a side of some elements."""
     own = SIDES[_TRIANGLE_SIDES[side] if _sides(rows.kind) == 3 else side]
     return rows.kind.rows(rows.nodes[inside])[:, own]

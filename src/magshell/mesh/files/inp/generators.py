@@ -7,15 +7,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
-from magshell.mesh.files.inp.blocks import add_nodes, new_set, positions
+from magshell.mesh.files.inp.blocks import new_set, positions
 from magshell.mesh.files.inp.frames import arc, move, parabola, straight
 from magshell.mesh.files.inp.keywords import Keyword, lookup, parameters, real, reals, shown, split, whole
-from magshell.mesh.files.inp.scope import Elements, NamedSet, Scope, flat
+from magshell.mesh.files.inp.scope import Elements, NamedSet, Nodes, Scope, flat
 from magshell.mesh.files.lines import Lines
 from magshell.units import shortened
 
-LARGEST = 10_000_000
-"""More nodes or elements than this are a slip."""
+_LARGEST = 5_000_000
+"""More generated nodes or elements than this in a part are a slip."""
 
 
 def generate_nodes(lines: Lines, keyword: Keyword, scope: Scope) -> None:
@@ -28,7 +28,7 @@ def generate_nodes(lines: Lines, keyword: Keyword, scope: Scope) -> None:
         fields = split(lines.text(line))
         first, last, step = _wholes(lines, line, fields[:3], "two nodes and an increment", (None, None, 1))
         step = abs(step) if last >= first else -abs(step)
-        if step == 0 or (last - first) % step or abs((last - first) // step) > LARGEST:
+        if step == 0 or (last - first) % step or abs((last - first) // step) > _LARGEST:
             lines.fail(line, f"from node {first} to node {last} it is not a whole number of increments {abs(step)}")
         numbers = np.arange(first, last + step, step)
         shares = np.linspace(0.0, 1.0, len(numbers))[1:-1]
@@ -42,7 +42,7 @@ def generate_nodes(lines: Lines, keyword: Keyword, scope: Scope) -> None:
                 lines.fail(line, "an arc given by its normal (180° or more) is not read; make it of two arcs")
         if points is None:
             lines.fail(line, "there is no arc of less than 180° about this centre from the first to the second node")
-        add_nodes(scope, numbers[1:-1], points, np.full(len(numbers) - 2 if len(numbers) > 2 else 0, line))
+        _add_nodes(lines, line, scope, numbers[1:-1], points)
         if "NSET" in given:
             new_set(lines, keyword, given["NSET"], scope.node_sets).add(numbers)
 
@@ -71,13 +71,13 @@ def fill_nodes(lines: Lines, keyword: Keyword, scope: Scope) -> None:
         starts, ends = (flat(each) for each in bounds)
         if len(starts) != len(ends) or not len(starts):
             lines.fail(line, f"the sets have {len(starts)} and {len(ends)} nodes; they need as many, one or more")
-        if count < 1 or count * len(starts) > LARGEST:
+        if count < 1 or count * len(starts) > _LARGEST:
             lines.fail(line, f"expected a number of intervals, found '{shortened(fields[2])}'")
         made = []
         for first, last in zip(starts.tolist(), ends.tolist(), strict=True):
             start, end = (_position(lines, line, scope, node) for node in (first, last))
             numbers = first + step * np.arange(1, count)
-            add_nodes(scope, numbers, straight(start, end, np.arange(1, count) / count), np.full(count - 1, line))
+            _add_nodes(lines, line, scope, numbers, straight(start, end, np.arange(1, count) / count))
             made += [np.array([first]), numbers, np.array([last])]
         if "NSET" in given:
             new_set(lines, keyword, given["NSET"], scope.node_sets).add(np.concatenate(made))
@@ -96,7 +96,7 @@ def copy_nodes(lines: Lines, keyword: Keyword, scope: Scope) -> None:
     if not len(numbers):
         return
     points = moved(np.array([_position(lines, keyword.line, scope, node) for node in numbers.tolist()]))
-    add_nodes(scope, numbers + change, points, np.full(len(numbers), keyword.line))
+    _add_nodes(lines, keyword.line, scope, numbers + change, points)
     if "NEWSET" in given:
         new_set(lines, keyword, given["NEWSET"], scope.node_sets).add(numbers + change)
 
@@ -114,14 +114,14 @@ def generate_elements(lines: Lines, keyword: Keyword, scope: Scope) -> None:
             lines.fail(line, f"there is no element {master} above that is a surface or a line")
         block, row = found
         counts, node_steps, steps = rest[::3], rest[1::3], rest[2::3]
-        if min(counts) < 1 or float(np.prod(counts, dtype=float)) > LARGEST:
+        if min(counts) < 1 or float(np.prod(counts, dtype=float)) > _LARGEST:
             lines.fail(line, f"expected {what}, found '{shortened(lines.text(line))}'")
         numbers, shifts = np.array([master]), np.array([0])
         for count, node_step, step in zip(counts, node_steps, steps, strict=True):
             times = np.arange(count)
             numbers = (numbers + step * times[:, None]).ravel()
             shifts = (shifts + node_step * times[:, None]).ravel()
-        _add(scope, block, numbers[1:], block.nodes[row] + shifts[1:, None], line)
+        _add_elements(lines, line, scope, block, numbers[1:], block.nodes[row] + shifts[1:, None])
         if "ELSET" in given:
             new_set(lines, keyword, given["ELSET"], scope.element_sets).add(numbers)
 
@@ -136,14 +136,27 @@ def copy_elements(lines: Lines, keyword: Keyword, scope: Scope) -> None:
     )
     for block in list(scope.elements):
         rows = np.flatnonzero(np.isin(block.numbers, old))
-        _add(scope, block, block.numbers[rows] + shift, block.nodes[rows] + node_shift, keyword.line)
+        numbers, nodes = block.numbers[rows] + shift, block.nodes[rows] + node_shift
+        _add_elements(lines, keyword.line, scope, block, numbers, nodes)
     if "NEWSET" in given:
         new_set(lines, keyword, given["NEWSET"], scope.element_sets).add(old + shift)
 
 
-def _add(scope: Scope, like: Elements, numbers: IntArray, nodes: IntArray, line: int) -> None:
+def _add_nodes(lines: Lines, line: int, scope: Scope, numbers: IntArray, points: FloatArray) -> None:
+    _count(lines, line, scope, len(numbers))
+    scope.nodes.append(Nodes(numbers, points, np.full(len(numbers), line)))
+
+
+def _add_elements(lines: Lines, line: int, scope: Scope, like: Elements, numbers: IntArray, nodes: IntArray) -> None:
+    _count(lines, line, scope, len(numbers))
     if len(numbers):
         scope.elements.append(Elements(like.type_name, like.kind, numbers, nodes, np.full(len(numbers), line)))
+
+
+def _count(lines: Lines, line: int, scope: Scope, made: int) -> None:
+    scope.generated += made
+    if scope.generated > _LARGEST:
+        lines.fail(line, f"more than {_LARGEST} nodes and elements are generated")
 
 
 def _wholes(lines: Lines, line: int, fields: list[str], what: str, defaults: Sequence[int | None]) -> list[int]:

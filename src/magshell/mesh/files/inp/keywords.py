@@ -15,7 +15,8 @@ from magshell.errors import suggest
 from magshell.mesh.files.lines import Lines
 from magshell.units import shortened
 
-LARGEST_NUMBER = 2**53
+LARGEST_NUMBER = 10**11
+"""Of nodes and elements; Abaqus allows 10⁹."""
 _WHOLE = re.compile(r"[+-]?[0-9]+")
 _REAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eEdD][+-]?[0-9]+)?")
 
@@ -119,7 +120,7 @@ def is_whole(text: str) -> bool:
 
 
 def whole(lines: Lines, line: int, text: str, what: str) -> int:
-    """A whole number that fits into a double."""
+    """A whole number of no more than 11 digits."""
     value = int(text) if is_whole(text) and len(text) < 20 else 2**62
     if abs(value) > LARGEST_NUMBER:
         lines.fail(line, f"expected {what}, found '{shortened(text)}'")

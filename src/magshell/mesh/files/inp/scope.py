@@ -94,6 +94,8 @@ class Scope:
     """How many elements have a volume."""
     unknown: dict[str, int] = field(default_factory=dict)
     """Types that may be surfaces and are not read, and how many elements they have."""
+    generated: int = 0
+    """How many nodes and elements were made of others."""
     frame: Frame | None = None
     """Of the coordinates that are read next."""
     _positions: dict[int, FloatArray] = field(default_factory=dict)
