@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from magshell.errors import InputError, suggest
 from magshell.mesh.files.contents import Contents
 from magshell.mesh.files.inp.blocks import read_elements, read_nodes, read_set, read_surface
@@ -196,9 +198,12 @@ def read_inp(content: bytes, name: str) -> Contents:
     lines = Lines(name, content.removeprefix(b"\xef\xbb\xbf"))
     lines.every = [line.strip() for line in lines.every]
     deck = _Deck(lines)
-    for keyword in keywords(lines):
-        deck.read(keyword)
-    found = deck.contents()
+    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused in the end
+        for keyword in keywords(lines):
+            deck.read(keyword)
+        found = deck.contents()
+    if not np.isfinite(found.points).all():
+        raise InputError(f"{name}: coordinates are not finite in their coordinate system, or where their instance is")
     if not len(found.points):
         raise InputError(f"{name}: has no *NODE block with nodes; it is not an Abaqus input file, or it has no mesh")
     return found

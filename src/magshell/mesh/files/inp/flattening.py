@@ -14,6 +14,7 @@ from magshell.mesh.edges import SIDES
 from magshell.mesh.files.cells import LINE2, LINE3, MISSING, Kind
 from magshell.mesh.files.contents import Block, Contents
 from magshell.mesh.files.inp.blocks import members
+from magshell.mesh.files.inp.keywords import folded
 from magshell.mesh.files.inp.numbering import Numbered, Placed, Rows, among, distinct
 from magshell.mesh.files.inp.scope import NamedSet, Numbers, Surface
 from magshell.mesh.files.inp.types import is_plane
@@ -192,11 +193,11 @@ class _Groups:
 
     def _named(self, every: Mapping[str, Mapping[str, T]]) -> Iterator[tuple[str, str, T]]:
         """Scope, name and value of all sets or surfaces, the assembly's under their own names."""
-        count = Counter(key for named in every.values() for key in named)
+        count = Counter(folded(each.name) for named in every.values() for each in named.values())
         for owner, named in every.items():
-            for key, each in named.items():
-                scope = self.numbered[owner].scope
-                yield owner, each.name if not owner or count[key] == 1 else f"{scope.name}.{each.name}", each
+            for each in named.values():
+                alone = not owner or count[folded(each.name)] == 1
+                yield owner, each.name if alone else f"{self.numbered[owner].scope.name}.{each.name}", each
 
     def _free(self, dimension: int, name: str) -> str:
         """A name that no other group of this dimension has."""

@@ -38,7 +38,7 @@ def frame(first: list[float], second: list[float]) -> Frame | None:
     else:
         along[2], normal = 0.0, np.array([0.0, 0.0, 1.0])
     lengths = np.linalg.norm(along), np.linalg.norm(normal)
-    if not min(lengths) > 0.0:
+    if not min(lengths) > 0.0 or not np.isfinite(lengths).all():
         return None
     e1, e3 = along / lengths[0], normal / lengths[1]
     return Frame(origin, np.column_stack([e1, np.cross(e3, e1), e3]))
