@@ -151,6 +151,10 @@ class Writer:
             self.keyword("Nfill", *named)
             self.rows([["LOW-line", "high-LINE", 2 * ny, row]])
         self.keyword("System")
+        if self.chance.random() < 0.3:
+            grid.nodes[99999] = (1.0, 2.0, 3.0)
+            self.keyword("Node")
+            self.rows([[99999, 1, "2.", 3.0]])
 
     def system(self) -> np.ndarray:
         """Origin and axes (4, 3) of a system that is written, or of none."""

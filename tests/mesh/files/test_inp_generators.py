@@ -147,6 +147,21 @@ def test_layers_of_elements():
     }
 
 
+def test_nodes_of_a_range_of_elements():
+    text = (
+        "*Node",
+        "1",
+        "9",
+        "*Ngen",
+        "1, 9",
+        "*Element, type=S3",
+        *(f"{n}, {n}, {n + 1}, {n + 2}" for n in range(1, 6)),
+    )
+    found = contents(*text, "*Elset, elset=e, generate", "2, 3", "4, 4, 2", "*Nset, nset=n, elset=e")
+    assert (found.node_groups["n"] + 1).tolist() == [2, 3, 4, 5, 6]
+    assert (found.blocks[0].groups["e"] + 1).tolist() == [2, 3, 4]
+
+
 def test_an_unsorted_set_is_filled_in_its_order():
     lines = [
         "*Node",

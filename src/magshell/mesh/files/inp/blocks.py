@@ -202,7 +202,7 @@ def members(
     for instance in dict.fromkeys((owner, "")):
         found = lookup(sets(instances[instance] if instance else scope), text)
         if found is not None:
-            return [(instance or part, numbers) for (part, _), numbers in found.pieces.items()]
+            return [(instance or part, numbers) for part, numbers in found.members()]
     first, rest = _parted(text)
     prefix = lookup({name: name for name in instances}, first) if rest else None
     if prefix is not None:
@@ -210,7 +210,7 @@ def members(
             return [(prefix, np.array([whole(lines, line, rest, "a number")]))]
         found = lookup(sets(instances[prefix]), rest)
         if found is not None:
-            return [(prefix, numbers) for numbers in found.pieces.values()]
+            return [(prefix, numbers) for _, numbers in found.members()]
         text, scope = rest, instances[prefix]
     known = suggest(shortened(shown(text)), (shortened(each.name) for each in sets(scope).values()))
     lines.fail(line, f"there is no set '{shortened(shown(text))}' above. {known}")

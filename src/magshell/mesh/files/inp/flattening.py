@@ -23,6 +23,8 @@ from magshell.units import shortened
 
 _LARGEST = 20_000_000
 """Nodes of all instances together."""
+_NAMED = 12
+"""Types of elements that a message names."""
 _FACES = {"", "SPOS", "SNEG", "POS", "NEG", "P", "N", "S1", "S2"}
 """Of shells and membranes: the whole element. S1 and S2 are CalculiX's names."""
 _EDGES = {f"E{side + 1}": side for side in range(4)}
@@ -75,9 +77,16 @@ def flattened(lines: Lines, instances: Mapping[str, Placed], assembly: Placed, n
         [*blocks, *edges],
         node_groups,
         solids=sum(placed.scope.solids for placed in every.values()),
-        unread=dict(unknown),
+        unread=_listed(unknown),
         notes=(*left, *notes),
     )
+
+
+def _listed(types: Counter[str]) -> dict[str, int]:
+    """So many that a message can name them."""
+    first = dict(list(types.items())[:_NAMED])
+    rest = types.total() - sum(first.values())
+    return first | ({"others": rest} if rest else {})
 
 
 class _Groups:
@@ -93,7 +102,7 @@ class _Groups:
         """Node sets as rows of all nodes."""
         groups = {}
         for owner, name, found in self._named({name: each.scope.node_sets for name, each in self.numbered.items()}):
-            rows, lost = self._nodes([(part or owner, numbers) for (part, _), numbers in found.pieces.items()])
+            rows, lost = self._nodes([(part or owner, numbers) for part, numbers in found.members()])
             self._tell(lost, name)
             groups[self._free(0, name)] = rows
         return groups
@@ -112,9 +121,7 @@ class _Groups:
         """Element sets as groups of the rows."""
         sets = {name: each.scope.element_sets for name, each in self.numbered.items()}
         for owner, name, found in self._named(sets):
-            chosen, skipped, lost = self._elements(
-                [(part or owner, numbers) for (part, _), numbers in found.pieces.items()]
-            )
+            chosen, skipped, lost = self._elements([(part or owner, numbers) for part, numbers in found.members()])
             self._tell(lost, name)
             if not chosen:
                 why = "it holds only elements that are left out" if skipped else "it has no element"

@@ -153,6 +153,8 @@ def table(lines: Lines, rows: Sequence[int], kind: type) -> AnyArray | None:
     chunk = [lines.every[line].rstrip(b", \t") for line in rows]
     if not chunk or chunk[0].count(b'"'):
         return None
+    if kind is float and b"D" in chunk[0].upper():
+        chunk = [line.upper().replace(b"D", b"E") for line in chunk]
     dtype = np.int64 if kind is int else np.float64
     try:
         with warnings.catch_warnings():

@@ -68,6 +68,21 @@ class NamedSet:
         """Add numbers of an instance."""
         self.pieces[instance, id(numbers)] = numbers
 
+    def members(self) -> list[tuple[str, Numbers]]:
+        """Pairs of an instance and numbers in it; few, so that sets of sets of sets stay small."""
+        if len(self.pieces) > 1 and not self.unsorted:
+            joined: dict[str, list[IntArray]] = {}
+            ranges = {}
+            for (instance, identity), numbers in self.pieces.items():
+                if isinstance(numbers, range):
+                    ranges[instance, identity] = numbers
+                else:
+                    joined.setdefault(instance, []).append(numbers)
+            self.pieces = dict(ranges)
+            for instance, each in joined.items():
+                self.add(np.unique(np.concatenate(each)) if len(each) > 1 else each[0], instance)
+        return [(instance, numbers) for (instance, _), numbers in self.pieces.items()]
+
 
 @dataclass
 class Surface:
@@ -100,6 +115,10 @@ class Scope:
     """Of the coordinates that are read next."""
     _positions: dict[int, FloatArray] = field(default_factory=dict)
     _indexed: int = 0
+    """How many blocks of nodes are in `_positions`."""
+    _rows: dict[int, tuple[Elements, int]] = field(default_factory=dict)
+    _blocks: int = 0
+    """How many blocks of elements are in `_rows`."""
 
     def instance(self, name: str) -> Scope:
         """An instance of this part: what is added to it does not change the part."""
@@ -133,11 +152,10 @@ class Scope:
 
     def row_of(self, element: int) -> tuple[Elements, int] | None:
         """The block and the row of an element, if it is there and a surface or a line."""
-        for block in reversed(self.elements):
-            rows = np.flatnonzero(block.numbers == element)
-            if rows.size:
-                return block, int(rows[0])
-        return None
+        for block in self.elements[self._blocks :]:
+            self._rows.update((number, (block, row)) for row, number in enumerate(block.numbers.tolist()))
+        self._blocks = len(self.elements)
+        return self._rows.get(element)
 
     def nodes_of(self, elements: Numbers) -> IntArray:
         """Numbers of all nodes of some elements."""
@@ -158,7 +176,7 @@ def contains(numbers: Numbers, wanted: IntArray) -> AnyArray:
 
 def flat(sets: NamedSet) -> IntArray:
     """Numbers of a set of its own scope: in rising order, each once, unless the file asks for its own order."""
-    parts = [np.asarray(numbers, dtype=np.int64) for (_, _), numbers in sets.pieces.items()]
+    parts = [np.asarray(numbers, dtype=np.int64) for numbers in sets.pieces.values()]
     joined = np.concatenate([np.zeros(0, dtype=np.int64), *parts])
     if not sets.unsorted:
         return np.unique(joined)
