@@ -95,7 +95,7 @@ class _Deck:
                 self._section(keyword)
             case _ if name in _CONSTRAINTS:
                 self.constraints.setdefault(name, keyword.line)
-            case _ if len(name) >= _SHORTEST and any(known.startswith(name) for known in _READ):
+            case _ if len(name) >= _SHORTEST and any(known.startswith(name) for known in _READ) and name != "END":
                 full = " or ".join(f"*{known}" for known in sorted(_READ) if known.startswith(name))
                 lines.fail(keyword.line, f"*{name} is not read; write {full}")
 
