@@ -160,7 +160,7 @@ def test_anything(content: bytes, suffix: str, folder: Path) -> None:
         ("part.inp", b"1, 5, 2", b"1, 999999999999, 1", "first, last and increment"),
         ("part.inp", b"1, 5, 2", b"1, 999999, 1", ""),
         ("part.inp", b"1, 5, 2", b"1, 99999999, 1", "first, last and increment"),
-        ("part.inp", b"1, 2\nplate", b"half", "holds it in turn"),
+        ("part.inp", b"1, 2\nplate", b"half, no", "no set 'no' above"),
         ("part.inp", b"0.02,", b"nan,", "part.inp, line "),
         ("part.inp", b"0.02,", b"1e200,", "coordinates must be finite"),
     ],

@@ -40,8 +40,7 @@ def test_a_plate_with_sets(tmp_path):
     found = ms.mesh.read(file, unit="mm")
     assert described(found)["elements"] == described(mesh)["elements"]
     assert {name: rows.tolist() for name, rows in found.element_groups.items()} == {
-        "part": [0, 1, 2, 3, 4, 5, 6],
-        "Part": [7],
+        "part": [0, 1, 2, 3, 4, 5, 6, 7],
         "odd": [0, 2, 4, 6],
         "first": [0, 1, 2],
         "ends": [0, 1, 2, 7],
@@ -89,23 +88,42 @@ def test_triangles_and_quadrilaterals():
         assert sorted(row[:3]) == [0, 1, 4]
 
 
+START = "*NODE\n1,0,0,0\n"
 BROKEN = {
     "empty": ("", "has no \\*NODE block"),
     "word": ("*NODE\n1, 0, zero, 0\n", "line 2: expected a node number and three coordinates, found '1, 0, zero, 0'"),
     "infinite": ("*NODE\n1, 0, inf, 0\n", "line 2: expected a node number"),
-    "twice": ("*NODE\n1,0,0,0\n1,1,0,0\n", "line 3: node 1 is given a second time"),
-    "too few nodes": ("*NODE\n1,0,0,0\n*ELEMENT, TYPE=S4\n1, 1, 1, 1\n", "line 3: the elements of type S4 need 5"),
-    "unknown node": ("*NODE\n1,0,0,0\n*ELEMENT, TYPE=S3\n1, 1, 2, 1\n", "line 4: element 1 has node 2"),
-    "bad range": ("*NODE\n1,0,0,0\n*NSET, NSET=a, GENERATE\n1, 2, 0\n", "line 4: expected first, last and increment"),
-    "set without name": ("*NODE\n1,0,0,0\n*NSET\n1\n", "line 3: the set has no name"),
-    "unknown set": ("*NODE\n1,0,0,0\n*NSET, NSET=a\nb\n", "the set 'a' holds the set 'b', which there is not"),
-    "set in itself": (
-        "*NODE\n1,0,0,0\n*NSET, NSET=a\nb\n*NSET,NSET=b\na\n",
-        "the set 'b', which holds it in turn|the set 'a', which",
+    "underscore": ("*NODE\n1, 1_0, 0, 0\n", "line 2: expected a node number"),
+    "broken number": ("*NODE\n1.5, 0, 0, 0\n", "line 2: expected a node number"),
+    "twice": (START + "1,1,0,0\n", "line 3: node 1 is given a second time"),
+    "too few nodes": (START + "*ELEMENT, TYPE=S4\n1, 1, 1, 1\n", "line 3: the elements of type S4 need 5 numbers each"),
+    "two on a line": (
+        START + "*ELEMENT, TYPE=S3\n1, 1, 1, 1, 2, 1\n1, 1\n",
+        "line 3: the elements of type S3 need 4 .* begin on a line of their own, but 8 numbers follow on 2 lines",
     ),
-    "two parts": ("*PART, NAME=a\n*NODE\n1,0,0,0\n*PART, NAME=b\n", "line 4: a second \\*PART"),
-    "moved instance": ("*NODE\n1,0,0,0\n*INSTANCE, NAME=a, PART=b\n1., 0., 0.\n", "line 4: the instance is moved"),
-    "included": ("*INCLUDE, INPUT=more.inp\n", "line 1: \\*INCLUDE is not followed"),
+    "unknown node": (START + "*ELEMENT, TYPE=S3\n1, 1, 2, 1\n", "line 4: element 1 has node 2"),
+    "element twice": (
+        START + "*ELEMENT, TYPE=S3\n7, 1, 1, 1\n*ELEMENT, TYPE=S4\n8, 1, 1, 1, 1\n7, 1, 1, 1, 1\n",
+        "line 7: element 7 is given a second time; line 4 has it",
+    ),
+    "mass twice": (
+        START + "*ELEMENT, TYPE=S3\n7, 1, 1, 1\n*ELEMENT, TYPE=MASS\n7, 1\n",
+        "line 6: element 7 is given a second time; line 4 has it",
+    ),
+    "no type": (START + "*ELEMENT\n1, 1, 1, 1\n", "line 3: the elements have no type"),
+    "bad range": (START + "*NSET, NSET=a, GENERATE\n1, 2, 0\n", "line 4: expected first, last and increment"),
+    "set without name": (START + "*NSET\n1\n", "line 3: the set has no name"),
+    "set with an empty name": (START + '*NSET, NSET=""\n1\n', "line 3: the set has no name"),
+    "unknown set": (
+        START + "*NSET, NSET=ab\n1\n*NSET, NSET=c\nabc\n",
+        "line 6: there is no set 'abc' above. Did you mean 'ab'",
+    ),
+    "set in itself": (START + "*NSET, NSET=a\nb\n*NSET, NSET=b\na\n", "line 4: there is no set 'b' above"),
+    "unknown parameter": (START + "*NSET, NSET=a, b\n1\n", "line 3: \\*NSET with 'B' is not read.* quotation marks"),
+    "parameter twice": (START + "*NSET, NSET=a, NSET=b\n1\n", "line 3: NSET is given twice"),
+    "from a file": ("*NODE, INPUT=nodes.txt\n", "line 1: \\*NODE with 'INPUT' is not read"),
+    "shortened keyword": (START + "*ELEM, TYPE=S3\n", "line 3: \\*ELEM is not read; write \\*ELEMENT"),
+    "included": ("*INCLUDE, INPUT=more.inp\n", "line 1: \\*INCLUDE: other files are not read"),
 }
 
 

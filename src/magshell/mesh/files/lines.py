@@ -34,8 +34,11 @@ class Lines:
         raise InputError(f"{self.name}, line {line + 1}: {message}")
 
     def text(self, line: int) -> str:
-        """A line without its blanks at both ends."""
-        return self.every[line].decode("utf-8", "replace").strip()
+        """A line without its blanks at both ends, in UTF-8 or, if it is not, in Latin 1."""
+        try:
+            return self.every[line].decode().strip()
+        except UnicodeDecodeError:
+            return self.every[line].decode("latin-1").strip()
 
     def numbers(self, line: int, what: str, kind: type = int) -> list[Any]:
         """All numbers of a line."""
