@@ -69,7 +69,7 @@ def assemble(contents: Contents, name: str, unit: str, second_order: bool) -> Fi
     Raises
     ------
     InputError
-        Solids, no surface, elements of first order that are not to be raised, a surface with one side only.
+        Solids, elements that cannot be used, no surface, elements of first order that are not to be raised, a surface with one side only.
     MeshError
         What `Mesh` refuses.
     """
@@ -147,6 +147,13 @@ def _surface(contents: Contents, name: str, changes: list[str]) -> tuple[IntArra
         raise InputError(
             f"{name}: has {contents.solids} solid elements (tetrahedra, hexahedra, ...). A shell is the mesh of a "
             "mid-surface, and its thickness is a number in the problem file: draw and mesh that surface instead."
+        )
+    if contents.unread:
+        listed = ", ".join(f"{count} of type {kind}" for kind, count in contents.unread.items())
+        raise InputError(
+            f"{name}: has elements of types that cannot be used: {listed}. Without them the surface would have holes. "
+            "There may be triangles and quadrilaterals of first or second order: mesh with these, or delete the "
+            "elements if they are no part of the shell."
         )
     rows, groups = _stacked(contents, 2, 8)
     if not len(rows):

@@ -39,6 +39,9 @@ class Contents:
     """Rows of `points`; groups of points that are elements stand in the blocks instead."""
     solids: int = 0
     """How many elements have a volume."""
+    unread: Mapping[str, int] = field(default_factory=dict)
+    """Elements that are or may be pieces of the surface but cannot be used: how many, by the file's name of their type.
+    A mesh without them would have holes, so that one with any is refused."""
     unit: str | None = None
     """Unit of length, where the file says it."""
     notes: tuple[str, ...] = ()
