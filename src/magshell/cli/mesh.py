@@ -42,6 +42,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--second-order", action="store_true", help="raise elements of first order, curved surfaces kept"
     )
+    parser.add_argument(
+        "--trust-script", action="store_true", help="let a .geo run programs and write files, as gmsh does"
+    )
 
 
 def run(given: argparse.Namespace) -> int:
@@ -92,7 +95,7 @@ def _meshed(given: argparse.Namespace) -> FileMesh:
             size = parse(given.size, LENGTH)
         except InputError as error:
             raise InputError(f"--size: {error}") from None
-    return from_cad(given.file, size, given.unit)
+    return from_cad(given.file, size, given.unit, given.trust_script)
 
 
 def _read(given: argparse.Namespace) -> FileMesh:

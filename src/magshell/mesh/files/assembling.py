@@ -69,7 +69,8 @@ def assemble(contents: Contents, name: str, unit: str, second_order: bool) -> Fi
     Raises
     ------
     InputError
-        Solids, elements that cannot be used, no surface, elements of first order that are not to be raised, a surface with one side only.
+        Solids, elements that cannot be used, no surface, elements of first order that are not to be raised, a surface
+        with one side only.
     MeshError
         What `Mesh` refuses.
     """

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import os
 import pathlib
-import re
 import tempfile
 from typing import Any, NamedTuple
 
@@ -18,6 +17,7 @@ from magshell.mesh.files.contents import GROUPED
 from magshell.mesh.files.cutting import with_bad_ones_cut
 from magshell.mesh.files.from_gmsh import contents_of
 from magshell.mesh.files.paths import GEOMETRY, readable, textual
+from magshell.mesh.files.scripts import SCRIPTS, put_alone
 from magshell.mesh.files.session import required, session
 from magshell.mesh.files.units import agreed, length_unit
 from magshell.mesh.geometry import diagonal_normals
@@ -28,9 +28,6 @@ KNOWS_ITS_UNIT = (".step", ".stp", ".iges", ".igs")
 CONVERTED = "mm"
 IGES = (".iges", ".igs")
 """Formats in which a closed surface, as a tube, has its seam twice: the nodes there are joined."""
-SCRIPTS = (".geo", ".geo_unrolled")
-_NAMING = re.compile(rb'\b(?:Include|Merge|ShapeFromFile)\b[\s(]*"(?!/|\w:)')
-"""What stands in a script before the name of a file beside it."""
 DEFAULT_ELEMENTS = 800
 """About as many elements does a mesh have whose size nobody said."""
 MOST_ELEMENTS = 1_000_000
@@ -79,7 +76,12 @@ class Candidate(NamedTuple):
         return not self.triangles and self.worst >= GOOD
 
 
-def from_cad(file: str | os.PathLike[str], size: float | None = None, unit: str | None = None) -> FileMesh:
+def from_cad(
+    file: str | os.PathLike[str],
+    size: float | None = None,
+    unit: str | None = None,
+    trust_script: bool = False,
+) -> FileMesh:
     """Mesh a geometry with gmsh (the extra `magshell[gmsh]`).
 
     Several of gmsh's algorithms are tried until one gives quadrilaterals only, without a bad corner; else the best is
@@ -95,6 +97,9 @@ def from_cad(file: str | os.PathLike[str], size: float | None = None, unit: str 
         Length of an element's side, m; without it that of the `.geo` file, or such that there are about 800 elements.
     unit : str, optional
         Of the lengths in a `.geo` or `.brep` file; STEP and IGES files say it themselves.
+    trust_script : bool
+        Whether a `.geo` file may do all that gmsh's scripts can do: run programs, write and read files. Otherwise only
+        statements that draw a geometry and say how it is to be meshed are let through, others refused.
 
     Returns
     -------
@@ -104,7 +109,7 @@ def from_cad(file: str | os.PathLike[str], size: float | None = None, unit: str 
     ------
     InputError
         gmsh is not there; no such file; a unit that is missing or superfluous; a geometry with a volume or without a
-        surface; gmsh's own errors.
+        surface; a script that does more than draw; gmsh's own errors.
     """
     path, name = pathlib.Path(file), pathlib.Path(file).name
     suffix = path.suffix.lower()
@@ -118,12 +123,15 @@ def from_cad(file: str | os.PathLike[str], size: float | None = None, unit: str 
         raise InputError(f"unit: {name} says itself in which unit its lengths are; leave the unit out")
     own = CONVERTED if suffix in KNOWS_ITS_UNIT else agreed(unit, None, name)
     required(name)
-    return apart(_mesh, path, None if size is None else size / length_unit(own), own, program="gmsh", name=name)
+    in_unit = None if size is None else size / length_unit(own)
+    with tempfile.TemporaryDirectory() as folder:
+        opened = path if trust_script else put_alone(path, pathlib.Path(folder))
+        return apart(_mesh, opened, name, in_unit, own, program="gmsh", name=name)
 
 
-def _mesh(path: pathlib.Path, size: float | None, unit: str) -> FileMesh:
+def _mesh(path: pathlib.Path, name: str, size: float | None, unit: str) -> FileMesh:
     """What `from_cad` returns; the size in the file's unit."""
-    name, suffix = path.name, path.suffix.lower()
+    suffix = path.suffix.lower()
     with session(name) as gmsh:
         open_geometry(gmsh, path, name)
         expected = set_size(gmsh, size, unit, suffix)
@@ -136,9 +144,8 @@ def _mesh(path: pathlib.Path, size: float | None, unit: str) -> FileMesh:
 
 def open_geometry(gmsh: Any, path: pathlib.Path, name: str) -> None:
     """Load the geometry; refuse volumes; name surfaces and curves if nothing has a name."""
-    with tempfile.TemporaryDirectory() as folder:
-        gmsh.open(str(_ended(path, pathlib.Path(folder))))
-        gmsh.model.occ.synchronize()
+    gmsh.open(str(path))
+    gmsh.model.occ.synchronize()
     if gmsh.model.getEntities(3):
         raise InputError(
             f"{name}: holds {len(gmsh.model.getEntities(3))} solid(s). A shell is the mesh of a mid-surface, and its "
@@ -154,15 +161,6 @@ def open_geometry(gmsh: Any, path: pathlib.Path, name: str) -> None:
         for dimension in (2, 1):
             for _, entity in gmsh.model.getEntities(dimension):
                 _name_entity(gmsh, dimension, entity)
-
-
-def _ended(path: pathlib.Path, folder: pathlib.Path) -> pathlib.Path:
-    """The file, or of a script whose last line has no end a copy in which it has: gmsh would leave that line out."""
-    if path.suffix.lower() not in SCRIPTS or path.read_bytes()[-1:] in (b"\n", b""):
-        return path
-    copy, beside = folder / path.name, f"{path.parent.absolute().as_posix()}/".encode()
-    copy.write_bytes(_NAMING.sub(lambda naming: naming[0] + beside, path.read_bytes()) + b"\n")
-    return copy
 
 
 def _name_entity(gmsh: Any, dimension: int, entity: int) -> None:

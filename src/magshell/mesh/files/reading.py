@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import pathlib
+import tempfile
 
 from magshell.errors import InputError
 from magshell.mesh.files.apart import apart
@@ -86,8 +87,11 @@ def _msh(path: pathlib.Path, name: str) -> Contents:
         if not installed():
             raise InputError(f"{error}; or let gmsh read it: {INSTALL}") from None
     from magshell.mesh.files.from_gmsh import read_with_gmsh
+    from magshell.mesh.files.scripts import put_alone
 
-    return apart(read_with_gmsh, path, name, program="gmsh", name=name, seconds=_seconds(path))
+    with tempfile.TemporaryDirectory() as folder:
+        copy = put_alone(path, pathlib.Path(folder))
+        return apart(read_with_gmsh, copy, name, program="gmsh", name=name, seconds=_seconds(path))
 
 
 def _seconds(path: pathlib.Path) -> int:
