@@ -43,6 +43,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--second-order", action="store_true", help="raise elements of first order, curved surfaces kept"
     )
     parser.add_argument(
+        "--closed", action="store_true", help="a closed surface with edges is meant, such as a box, and no solid's skin"
+    )
+    parser.add_argument(
         "--trust-script", action="store_true", help="let a .geo run programs and write files, as gmsh does"
     )
 
@@ -95,7 +98,7 @@ def _meshed(given: argparse.Namespace) -> FileMesh:
             size = parse(given.size, LENGTH)
         except InputError as error:
             raise InputError(f"--size: {error}") from None
-    return from_cad(given.file, size, given.unit, given.trust_script)
+    return from_cad(given.file, size, given.unit, given.trust_script, given.closed)
 
 
 def _read(given: argparse.Namespace) -> FileMesh:
@@ -103,7 +106,7 @@ def _read(given: argparse.Namespace) -> FileMesh:
 
     if given.size is not None:
         raise InputError(f"--size: {given.file} is a mesh, whose elements have their size; mesh its geometry anew")
-    return read(given.file, given.unit, given.second_order)
+    return read(given.file, given.unit, given.second_order, given.closed)
 
 
 def _target(out: str | None, source: pathlib.Path, geometry: bool) -> pathlib.Path | None:

@@ -81,6 +81,7 @@ def from_cad(
     size: float | None = None,
     unit: str | None = None,
     trust_script: bool = False,
+    closed: bool = False,
 ) -> FileMesh:
     """Mesh a geometry with gmsh (the extra `magshell[gmsh]`).
 
@@ -100,6 +101,8 @@ def from_cad(
     trust_script : bool
         Whether a `.geo` file may do all that gmsh's scripts can do: run programs, write and read files. Otherwise only
         statements that draw a geometry and say how it is to be meshed are let through, others refused.
+    closed : bool
+        Whether closed surfaces with sharp edges or parallel faces are meant as shells, as for `read`.
 
     Returns
     -------
@@ -126,10 +129,10 @@ def from_cad(
     in_unit = None if size is None else size / length_unit(own)
     with tempfile.TemporaryDirectory() as folder:
         opened = path if trust_script else put_alone(path, pathlib.Path(folder))
-        return apart(_mesh, opened, name, in_unit, own, program="gmsh", name=name)
+        return apart(_mesh, opened, name, in_unit, own, closed, program="gmsh", name=name)
 
 
-def _mesh(path: pathlib.Path, name: str, size: float | None, unit: str) -> FileMesh:
+def _mesh(path: pathlib.Path, name: str, size: float | None, unit: str, closed: bool) -> FileMesh:
     """What `from_cad` returns; the size in the file's unit."""
     suffix = path.suffix.lower()
     with session(name) as gmsh:
@@ -139,7 +142,7 @@ def _mesh(path: pathlib.Path, name: str, size: float | None, unit: str) -> FileM
         attempts = ATTEMPTS[STRUCTURED:] if structured else ATTEMPTS
         if expected > MANY:
             attempts = tuple(sorted(attempts, key=lambda each: (not each.recombine, each == QUASI_STRUCTURED)))
-        return _best(gmsh, name, unit, attempts)
+        return _best(gmsh, name, unit, closed, attempts)
 
 
 def open_geometry(gmsh: Any, path: pathlib.Path, name: str) -> None:
@@ -222,7 +225,7 @@ def _area(gmsh: Any) -> float:
     return float(np.linalg.norm(diagonal_normals(contents.points[corners[:, :4]]), axis=1).sum())
 
 
-def _best(gmsh: Any, name: str, unit: str, attempts: tuple[Attempt, ...]) -> FileMesh:
+def _best(gmsh: Any, name: str, unit: str, closed: bool, attempts: tuple[Attempt, ...]) -> FileMesh:
     """The first good mesh, else the best one; of triangles only if there is no other."""
     best: Candidate | None = None
     reason = f"{name}: gmsh makes no elements of it"
@@ -230,7 +233,7 @@ def _best(gmsh: Any, name: str, unit: str, attempts: tuple[Attempt, ...]) -> Fil
         if best is not None and (best.good or (best.worst >= GOOD and not attempt.recombine)):
             break
         try:
-            candidate = meshed(gmsh, name, unit, attempt)
+            candidate = meshed(gmsh, name, unit, attempt, closed)
         except InputError as error:
             reason = str(error)
         except Exception as error:  # gmsh raises Exception itself
@@ -242,7 +245,7 @@ def _best(gmsh: Any, name: str, unit: str, attempts: tuple[Attempt, ...]) -> Fil
     return best.mesh
 
 
-def meshed(gmsh: Any, name: str, unit: str, attempt: Attempt) -> Candidate:
+def meshed(gmsh: Any, name: str, unit: str, attempt: Attempt, closed: bool = False) -> Candidate:
     """A mesh of second order made in one way."""
     option = gmsh.option.setNumber
     gmsh.model.mesh.clear()
@@ -256,7 +259,7 @@ def meshed(gmsh: Any, name: str, unit: str, attempt: Attempt) -> Candidate:
     if name.lower().endswith(IGES):
         gmsh.model.mesh.removeDuplicateNodes()
     _put_on_surfaces(gmsh)
-    mesh = with_bad_ones_cut(assemble(contents_of(gmsh, name), name, unit, second_order=False), GOOD)
+    mesh = with_bad_ones_cut(assemble(contents_of(gmsh, name), name, unit, False, closed), GOOD)
     triangles = int(mesh.triangles.sum())
     return Candidate(mesh, triangles, worst(mesh)["scaled_jacobian"].value)
 

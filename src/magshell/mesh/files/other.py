@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import io
 import pathlib
+import warnings
 from typing import Any
 
 import numpy as np
@@ -47,7 +48,11 @@ def read_other(path: pathlib.Path, name: str) -> Contents:
         raise InputError(f"{name}: files '{path.suffix}' are not known. There is: {listed}")
     said = io.StringIO()
     try:
-        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+        with (
+            contextlib.redirect_stdout(said),
+            contextlib.redirect_stderr(said),
+            warnings.catch_warnings(action="ignore"),
+        ):
             mesh = meshio.read(path)
     except SystemExit:  # meshio's way of refusing a file that no reader takes
         raise InputError(f"{name}: meshio cannot read it: {shortened(_last(said.getvalue()))}") from None

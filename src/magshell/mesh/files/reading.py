@@ -17,7 +17,9 @@ SECONDS, BYTES_PER_SECOND = 60, 200_000
 """Of CPU time that another program has for a file of any size, and the least that it reads."""
 
 
-def read(file: str | os.PathLike[str], unit: str | None = None, second_order: bool = False) -> FileMesh:
+def read(
+    file: str | os.PathLike[str], unit: str | None = None, second_order: bool = False, closed: bool = False
+) -> FileMesh:
     """Read a mesh with its groups.
 
     Parameters
@@ -31,6 +33,9 @@ def read(file: str | os.PathLike[str], unit: str | None = None, second_order: bo
     second_order : bool
         Whether elements of first order are raised to second, with middles on the curved surface that they stand for;
         refused otherwise.
+    closed : bool
+        Whether a closed surface with sharp edges, or with two flat faces that are parallel, is meant as a shell, like
+        a thin-walled box. Otherwise it is taken for the skin of a solid and refused.
 
     Returns
     -------
@@ -55,7 +60,7 @@ def read(file: str | os.PathLike[str], unit: str | None = None, second_order: bo
         )
     readable(path)
     contents = _contents(path, name)
-    return assemble(contents, name, agreed(unit, contents.unit, name), second_order)
+    return assemble(contents, name, agreed(unit, contents.unit, name), second_order, closed)
 
 
 def _contents(path: pathlib.Path, name: str) -> Contents:

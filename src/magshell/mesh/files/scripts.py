@@ -26,6 +26,7 @@ LONGEST = 1000
 LONGEST_LINE = 2000
 """Characters: of longer lines gmsh may read again from the middle, in loops."""
 
+
 def _words(text: str) -> frozenset[str]:
     return frozenset(text.split())
 
@@ -71,7 +72,8 @@ FORBIDDEN = _words(
     """
 )
 """Words that have no place anywhere: they run programs, write, read what is outside the script, or make such words."""
-OPTIONS = ("Mesh", "Geometry", "Field")
+OPTIONS = ("Mesh", "Geometry", "General")
+"""Kinds of options that may be set."""
 OTHER_OPTIONS = ("PostProcessing", "Print", "Solver", "View")
 GENERAL = ("AbortOnError", "ExpertMode", "NumThreads", "Terminal", "Verbosity")
 """Of the options `General.…` these may be set: others write files at the end."""
@@ -220,7 +222,7 @@ def _check(tokens: list[Token], name: str) -> None:
             _refuse(name, token.line, f"has {shortened(f'{token.text}.{option}')}")
         if _may_begin(tokens, number):
             known = token.text in KEYWORDS or token.text in COMMANDS or token.text in _NAMES_A_FILE
-            if not (known or option or _sign(tokens, behind) in _ASSIGNS):
+            if not (known or (option and token.text in OPTIONS) or _sign(tokens, behind) in _ASSIGNS):
                 _refuse(name, token.line, f"says {shortened(token.text)}")
         if token.text in ("Printf", "Warning", "Error") and _sign(tokens, behind) != ";":
             _refuse(name, token.line, f"writes into a file by {token.text}")
