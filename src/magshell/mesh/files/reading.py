@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import pathlib
 import tempfile
+from collections.abc import Callable
 
 from magshell.errors import InputError
 from magshell.mesh.files.apart import apart
@@ -26,7 +27,7 @@ def read(
     ----------
     file : path
         gmsh's `.msh` (formats 4.1 and 2.2 in text; all others if the extra `magshell[gmsh]` is installed), Abaqus'
-        `.inp`, VTK's `.vtu` and `.vtk`, and what meshio reads if the extra `magshell[meshio]` is installed.
+        `.inp`, VTK's `.vtu`, `.vtp` and `.vtk`, and what meshio reads if the extra `magshell[meshio]` is installed.
     unit : str, optional
         Of the lengths in the file: m, cm, mm or um. Required, unless the file says it: those of `write` and of
         `magshell mesh` do, and the program's own `.vtu` files.
@@ -64,21 +65,36 @@ def read(
 
 
 def _contents(path: pathlib.Path, name: str) -> Contents:
-    match path.suffix.lower():
-        case ".msh":
-            return _msh(path, name)
-        case ".inp":
-            from magshell.mesh.files.inp import read_inp
+    reader = _READERS.get(path.suffix.lower())
+    if reader is not None:
+        return reader(path, name)
+    from magshell.mesh.files.other import read_other
 
-            return read_inp(path.read_bytes(), name)
-        case ".vtu" | ".vtk":
-            from magshell.mesh.files.vtk import read_vtk
+    return read_other(path, name, tuple(_READERS))
 
-            return apart(read_vtk, path, name, program="VTK", name=name, seconds=_seconds(path))
-        case _:
-            from magshell.mesh.files.other import read_other
 
-            return read_other(path, name)
+def _inp(path: pathlib.Path, name: str) -> Contents:
+    from magshell.mesh.files.inp import read_inp
+
+    return read_inp(path.read_bytes(), name)
+
+
+def _unv(path: pathlib.Path, name: str) -> Contents:
+    from magshell.mesh.files.unv import read_unv
+
+    return read_unv(path.read_bytes(), name)
+
+
+def _nastran(path: pathlib.Path, name: str) -> Contents:
+    from magshell.mesh.files.nastran import read_nastran
+
+    return read_nastran(path.read_bytes(), name)
+
+
+def _vtk(path: pathlib.Path, name: str) -> Contents:
+    from magshell.mesh.files.vtk import read_vtk
+
+    return apart(read_vtk, path, name, program="VTK", name=name, seconds=_seconds(path))
 
 
 def _msh(path: pathlib.Path, name: str) -> Contents:
@@ -102,3 +118,13 @@ def _msh(path: pathlib.Path, name: str) -> Contents:
 def _seconds(path: pathlib.Path) -> int:
     """What another program has to read a file: some loop for ever on a damaged one."""
     return SECONDS + path.stat().st_size // BYTES_PER_SECOND
+
+
+_READERS: dict[str, Callable[[pathlib.Path, str], Contents]] = {
+    ".msh": _msh,
+    ".inp": _inp,
+    ".unv": _unv,
+    **dict.fromkeys((".bdf", ".nas", ".fem"), _nastran),
+    **dict.fromkeys((".vtu", ".vtp", ".vtk"), _vtk),
+}
+"""By the ending of a file; meshio reads others."""
