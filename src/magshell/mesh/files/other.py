@@ -13,6 +13,7 @@ import numpy as np
 
 from magshell.arrays import IntArray
 from magshell.errors import InputError
+from magshell.mesh.files.apart import apart
 from magshell.mesh.files.cells import MESHIO
 from magshell.mesh.files.contents import GROUPED, Block, Contents
 from magshell.units import shortened
@@ -23,7 +24,7 @@ _NEEDED = {**dict.fromkeys(("cgns", "h5m", "hmf", "med"), "h5py"), "exodus": "ne
 """Packages without which meshio does not read a format."""
 
 
-def read_other(path: pathlib.Path, name: str, others: tuple[str, ...]) -> Contents:
+def read_other(path: pathlib.Path, name: str, others: tuple[str, ...], seconds: int) -> Contents:
     """Read a file in one of meshio's formats, with its sets of cells and points as groups.
 
     Parameters
@@ -33,6 +34,8 @@ def read_other(path: pathlib.Path, name: str, others: tuple[str, ...]) -> Conten
         Of the file, for messages.
     others : tuple of str
         Endings of the files that are read without meshio, for messages.
+    seconds : int
+        Of CPU time that it may take.
 
     Raises
     ------
@@ -53,6 +56,13 @@ def read_other(path: pathlib.Path, name: str, others: tuple[str, ...]) -> Conten
         raise InputError(f"{name}: files '{path.suffix}' are not known. There is: {listed}")
     if needed:
         raise InputError(f"{name}: meshio needs {needed} to read it, which is not installed: pip install {needed}")
+    return apart(_read, path, name, program="meshio", name=name, seconds=seconds)
+
+
+def _read(path: pathlib.Path, name: str) -> Contents:
+    """What meshio reads; on some damaged files it finds no end."""
+    import meshio
+
     said = io.StringIO()
     try:
         with (

@@ -70,7 +70,7 @@ def _contents(path: pathlib.Path, name: str) -> Contents:
         return reader(path, name)
     from magshell.mesh.files.other import read_other
 
-    return read_other(path, name, tuple(_READERS))
+    return read_other(path, name, tuple(_READERS), _seconds(path))
 
 
 def _inp(path: pathlib.Path, name: str) -> Contents:

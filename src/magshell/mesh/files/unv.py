@@ -193,11 +193,11 @@ def _contents(lines: Lines, found: _Found) -> Contents:
         lines.fail(found.nodes[row][3], f"node {found.nodes[row][0]} is given a second time")
 
     for number, system, _, line in found.nodes:
-        kind = found.systems.get(system, "" if system in (0, 1) else "not there")
-        if kind:
+        strange = found.systems.get(system, "" if system in (0, 1) else "not there")
+        if strange:
             lines.fail(
                 line,
-                f"node {number} is given in the coordinate system {system}, which is {kind}; save the nodes in the "
+                f"node {number} is given in the coordinate system {system}, which is {strange}; save the nodes in the "
                 "global Cartesian one",
             )
     numbers, points = in_order(

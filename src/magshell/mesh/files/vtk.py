@@ -15,7 +15,7 @@ from magshell.mesh.files.contents import Block, Contents
 NAMES, MEMBERSHIP = "element_group_names", "element_group"
 """Field data and cell array of the program's own files: names, and the number of each element's group, from 1.
 
-The names are the bytes of lines in UTF-8, or, in files of versions up to 0.12, an array of texts."""
+The names are the bytes of lines in UTF-8, or, in older files, an array of texts."""
 _OWN_UNIT = "m"
 
 
