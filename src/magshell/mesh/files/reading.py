@@ -6,6 +6,7 @@ import os
 import pathlib
 import tempfile
 from collections.abc import Callable
+from importlib.util import find_spec
 
 from magshell.errors import InputError
 from magshell.mesh.files.apart import apart
@@ -27,7 +28,8 @@ def read(
     ----------
     file : path
         gmsh's `.msh` (formats 4.1 and 2.2 in text; all others if the extra `magshell[gmsh]` is installed), Abaqus'
-        `.inp`, VTK's `.vtu`, `.vtp` and `.vtk`, and what meshio reads if the extra `magshell[meshio]` is installed.
+        `.inp`, Nastran's `.bdf`, `.nas` and `.fem`, universal files `.unv`, VTK's `.vtu`, `.vtp` and `.vtk`; with the
+        extra `magshell[meshio]` also `.med` and what meshio reads, such as `.stl`, `.obj` and `.ply`.
     unit : str, optional
         Of the lengths in the file: m, cm, mm or um. Required, unless the file says it: those of `write` and of
         `magshell mesh` do, and the program's own `.vtu` files.
@@ -70,7 +72,8 @@ def _contents(path: pathlib.Path, name: str) -> Contents:
         return reader(path, name)
     from magshell.mesh.files.other import read_other
 
-    return read_other(path, name, tuple(_READERS), _seconds(path))
+    own = tuple(ending for ending in _READERS if ending != ".med" or find_spec("h5py"))
+    return read_other(path, name, own, _seconds(path))
 
 
 def _inp(path: pathlib.Path, name: str) -> Contents:
@@ -89,6 +92,14 @@ def _nastran(path: pathlib.Path, name: str) -> Contents:
     from magshell.mesh.files.nastran import read_nastran
 
     return read_nastran(path.read_bytes(), name)
+
+
+def _med(path: pathlib.Path, name: str) -> Contents:
+    if find_spec("h5py") is None:
+        raise InputError(f'{name}: is read by h5py, which is not installed: pip install "magshell[meshio]"')
+    from magshell.mesh.files.med import read_med
+
+    return apart(read_med, path, name, program="h5py", name=name, seconds=_seconds(path))
 
 
 def _vtk(path: pathlib.Path, name: str) -> Contents:
@@ -124,6 +135,7 @@ _READERS: dict[str, Callable[[pathlib.Path, str], Contents]] = {
     ".msh": _msh,
     ".inp": _inp,
     ".unv": _unv,
+    ".med": _med,
     **dict.fromkeys((".bdf", ".nas", ".fem"), _nastran),
     **dict.fromkeys((".vtu", ".vtp", ".vtk"), _vtk),
 }
