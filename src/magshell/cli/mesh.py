@@ -25,8 +25,9 @@ examples:
   magshell mesh part.inp --unit mm --second-order --out part.msh
 
 A geometry (.geo, .step, .iges, .brep) is meshed by gmsh into quadrilaterals: pip install "magshell[gmsh]".
-A mesh (.msh, Abaqus .inp, .vtu, .vtk, others through pip install "magshell[meshio]") is read, checked and, with --out,
-written. STEP and IGES files say the unit of their lengths; of others --unit does. What is written says its unit itself:
+A mesh (.msh, Abaqus .inp, Nastran .bdf, .unv, .vtu, .vtk, others through pip install "magshell[meshio]") is read,
+checked and, with --out, written. STEP and IGES files say the unit of their lengths; of others --unit does. What is
+written says its unit itself:
     [mesh]
     file = "part.msh\""""
 
