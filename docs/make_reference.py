@@ -164,6 +164,8 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "file": "A mesh, from the folder of the problem file.",
             "unit": "Of the lengths in the file. Files of `magshell mesh` say it themselves; of others it is required.",
             "second_order": "Whether elements of first order get mid-side nodes, on the surface that they stand for.",
+            "closed": "Whether a closed surface with sharp edges or parallel faces is meant, such as a box; else it is "
+            "refused as the skin of a solid.",
             **GROUPS,
         },
     ),

@@ -53,6 +53,16 @@ def vtk(mesh: Mesh, suffix: str, text: bool) -> bytes:
         return file.read_bytes()
 
 
+def nastran(mesh: Mesh) -> bytes:
+    """Nastran's bulk data in free and small fields, in a system of coordinates of its own."""
+    lines = ["BEGIN BULK", "CORD2C,3,,0.,0.,0.,0.,0.,1.", ",1.,0.,0."]
+    lines += [f"GRID,{number},3,{x!r},{1e3 * y!r},{z!r}" for number, (x, y, z) in enumerate(mesh.points.tolist(), 1)]
+    for number, row in enumerate((mesh.elements + 1).tolist(), 1):
+        lines += ["".join(f"{text:<8}" for text in ("CQUAD8", number, 1 + number // 2, *row[:6], "+"))]
+        lines += ["".join(f"{text:<8}" for text in ("+", *row[6:]))]
+    return "\n".join([*lines, "ENDDATA", ""]).encode()
+
+
 def written(mesh: Mesh, file: Path) -> bytes:
     ms.mesh.write(mesh, file, "mm")
     return file.read_bytes()
@@ -104,6 +114,52 @@ def test_inp(content: bytes, folder: Path) -> None:
     refused_or_a_mesh(content, folder / "part.inp")
 
 
+@share(0.07)
+@given(content=damaged(nastran(ms.mesh.rectangle(20.0, 5.0, (4, 1)))))
+def test_nastran(content: bytes, folder: Path) -> None:
+    refused_or_a_mesh(content, folder / "part.bdf")
+
+
+@share(0.07)
+@given(content=damaged((DATA / "gmsh_q8.unv").read_bytes()))
+def test_unv(content: bytes, folder: Path) -> None:
+    refused_or_a_mesh(content, folder / "part.unv")
+
+
+@share(0.005)
+@given(content=damaged((DATA / "two-plates.med").read_bytes()))
+def test_med(content: bytes, folder: Path) -> None:
+    """Read in another process, which HDF5 may crash."""
+    pytest.importorskip("h5py")
+    refused_or_a_mesh(content, folder / "part.med")
+
+
+@share(0.005)
+@given(content=damaged((DATA / "strip_70.vtu").read_bytes()))
+def test_lagrange_cells(content: bytes, folder: Path) -> None:
+    refused_or_a_mesh(content, folder / "strip.vtu")
+
+
+@pytest.mark.parametrize("suffix", [".stl", ".ply", ".obj"])
+def test_skins(suffix: str, folder: Path) -> None:
+    """Through meshio, in another process: a closed box stays refused, or is damaged so that it is another surface."""
+    meshio = pytest.importorskip("meshio")
+    points = np.array([[x, y, z] for x in (0.0, 4.0) for y in (0.0, 2.0) for z in (0.0, 1.0)])
+    sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    triangles = np.array([each for a, b, c, d in sides for each in ((a, b, c), (a, c, d))])
+    meshio.Mesh(points, [("triangle", triangles)]).write(folder / f"box{suffix}")
+    whole = (folder / f"box{suffix}").read_bytes()
+    with pytest.raises(InputError, match="is the skin of a solid"):
+        read(folder / f"box{suffix}", "mm", second_order=True)
+
+    @share(0.005)
+    @given(content=damaged(whole))
+    def check(content: bytes) -> None:
+        refused_or_a_mesh(content, folder / f"part{suffix}")
+
+    check()
+
+
 @pytest.mark.parametrize("text", [True, False], ids=["text", "binary"])
 @pytest.mark.parametrize("suffix", [".vtu", ".vtk"])
 def test_vtk(suffix: str, text: bool, folder: Path) -> None:
@@ -141,7 +197,7 @@ def test_msh_through_gmsh(content: bytes, folder: Path) -> None:
 
 
 @share(0.02)
-@given(content=st.binary(max_size=400), suffix=st.sampled_from([".msh", ".inp"]))
+@given(content=st.binary(max_size=400), suffix=st.sampled_from([".msh", ".inp", ".unv", ".bdf"]))
 def test_anything(content: bytes, suffix: str, folder: Path) -> None:
     refused_or_a_mesh(content, folder / f"any{suffix}")
 
@@ -174,7 +230,7 @@ def test_what_may_stand_in_a_file(name: str, old: bytes, new: bytes, words: str,
             read(folder / name, "mm", second_order=True)
 
 
-@pytest.mark.parametrize("suffix", [".msh", ".inp", ".vtu", ".vtk", ".txt", ""])
+@pytest.mark.parametrize("suffix", [".msh", ".inp", ".unv", ".bdf", ".vtu", ".vtp", ".vtk", ".txt", ""])
 def test_empty(suffix: str, folder: Path) -> None:
     (folder / f"empty{suffix}").touch()
     with pytest.raises(InputError) as error:

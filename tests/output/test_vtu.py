@@ -14,8 +14,7 @@ QUADRATIC_QUAD = int(pyvista.CellType.QUADRATIC_QUAD)
 
 
 def texts(grid, name):
-    array = grid.GetFieldData().GetAbstractArray(name)
-    return [array.GetValue(i) for i in range(array.GetNumberOfValues())]
+    return grid.field_data[name].tobytes().decode().split("\n")
 
 
 @pytest.fixture
@@ -85,6 +84,20 @@ def test_files_hold_exactly_the_registered_outputs(path, written):
             rows = len(grid.points) if output.where == "point" else grid.n_cells
             assert array.shape == ((rows,) if output.components == 1 else (rows, 3)), name
             np.testing.assert_array_equal(array, output.evaluate(path.discretisation, step.state), err_msg=name)
+
+
+def test_meshio_opens_the_files(path, written):
+    """It refuses files with arrays of texts."""
+    meshio = pytest.importorskip("meshio")
+    for step in path.steps:
+        found = meshio.read(written / "steps" / f"step-{step.number:04d}.vtu")
+        np.testing.assert_array_equal(found.points, path.discretisation.mesh.points)
+        np.testing.assert_array_equal(found.cells_dict["quad8"], path.discretisation.mesh.elements)
+        np.testing.assert_array_equal(found.point_data["displacement"], step.state.u)
+        assert set(found.cell_data) == {name for name, output in OUTPUTS.items() if output.where == "cell"}
+        assert texts(pyvista.read(written / "steps" / f"step-{step.number:04d}.vtu"), "element_group_names") == (
+            found.field_data["element_group_names"].astype(np.uint8).tobytes().decode().split("\n")
+        )
 
 
 def test_field_and_groups_are_recorded(path, written):

@@ -25,8 +25,9 @@ examples:
   magshell mesh part.inp --unit mm --second-order --out part.msh
 
 A geometry (.geo, .step, .iges, .brep) is meshed by gmsh into quadrilaterals: pip install "magshell[gmsh]".
-A mesh (.msh, Abaqus .inp, .vtu, .vtk, others through pip install "magshell[meshio]") is read, checked and, with --out,
-written. STEP and IGES files say the unit of their lengths; of others --unit does. What is written says its unit itself:
+A mesh (.msh, Abaqus .inp, Nastran .bdf, .unv, .vtu, .vtk, others through pip install "magshell[meshio]") is read,
+checked and, with --out, written. STEP and IGES files say the unit of their lengths; of others --unit does. What is
+written says its unit itself:
     [mesh]
     file = "part.msh\""""
 
@@ -41,6 +42,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--second-order", action="store_true", help="raise elements of first order, curved surfaces kept"
+    )
+    parser.add_argument(
+        "--closed", action="store_true", help="a closed surface with edges is meant, such as a box, and no solid's skin"
+    )
+    parser.add_argument(
+        "--trust-script", action="store_true", help="let a .geo run programs and write files, as gmsh does"
     )
 
 
@@ -92,7 +99,7 @@ def _meshed(given: argparse.Namespace) -> FileMesh:
             size = parse(given.size, LENGTH)
         except InputError as error:
             raise InputError(f"--size: {error}") from None
-    return from_cad(given.file, size, given.unit)
+    return from_cad(given.file, size, given.unit, given.trust_script, given.closed)
 
 
 def _read(given: argparse.Namespace) -> FileMesh:
@@ -100,7 +107,7 @@ def _read(given: argparse.Namespace) -> FileMesh:
 
     if given.size is not None:
         raise InputError(f"--size: {given.file} is a mesh, whose elements have their size; mesh its geometry anew")
-    return read(given.file, given.unit, given.second_order)
+    return read(given.file, given.unit, given.second_order, given.closed)
 
 
 def _target(out: str | None, source: pathlib.Path, geometry: bool) -> pathlib.Path | None:

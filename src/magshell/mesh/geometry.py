@@ -22,13 +22,19 @@ def scaled_jacobians(points: FloatArray, elements: IntArray) -> FloatArray:
     derivative of its quadratic interpolation. The normal A1 x A2 / (|A1| |A2|) of these tangents is projected
     on that of the diagonals, so that a corner turned inside out counts negative. Corners 3 and 4 of a triangle are one.
     """
-    x, triangles = points[elements], is_triangle(elements)
+    x = points[elements]
+    result: FloatArray = np.einsum("eci,ei->ec", corner_normals(x, elements), unit(diagonal_normals(x)))
+    return result
+
+
+def corner_normals(x: FloatArray, elements: IntArray) -> FloatArray:
+    """Normal A1 x A2 / (|A1| |A2|) of the edge tangents at the corners, (elements, 4, 3), with x (elements, 8, 3)."""
+    triangles = is_triangle(elements)
     leaving = 4 * x[:, 4:] - 3 * x[:, :4] - x[:, [1, 2, 3, 0]]
     arriving = 4 * x[:, [7, 4, 5, 6]] - 3 * x[:, :4] - x[:, [3, 0, 1, 2]]
     leaving[triangles, 2] = leaving[triangles, 3]
     arriving[triangles, 3] = arriving[triangles, 2]
-    normal = np.cross(unit(leaving), unit(arriving))
-    result: FloatArray = np.einsum("eci,ei->ec", normal, unit(diagonal_normals(x)))
+    result: FloatArray = np.cross(unit(leaving), unit(arriving))
     return result
 
 

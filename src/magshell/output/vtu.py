@@ -33,9 +33,9 @@ class VtuWriter(Observer):
 
     Points are reference positions (m): in ParaView, *Warp By Vector* with `displacement` shows the deformed
     shape. Point and cell arrays are those of `magshell.output.registry`; their units and meaning are in the
-    field data `outputs`, `units` and `meanings`, beside `load_factor`, `step`, `flux_density` and
-    `flux_density_magnitude` (T). The time in the PVD file is the load factor plus the number of the stages before, or,
-    on a path that turns back, the number of the step.
+    field data `outputs`, `units` and `meanings` (bytes of UTF-8, a line each), beside `load_factor`, `step`,
+    `flux_density` and `flux_density_magnitude` (T). The time in the PVD file is the load factor plus the number of the
+    stages before, or, on a path that turns back, the number of the step.
 
     Parameters
     ----------
@@ -170,14 +170,8 @@ def grid(discretisation: Discretisation, step: Step | CriticalPoint | BucklingMo
 
 
 def _add_texts(grid: Any, name: str, texts: Iterable[str]) -> None:
-    """Field data of texts; PyVista itself takes only ASCII, and a group's name may be anything."""
-    from vtkmodules.vtkCommonCore import vtkStringArray
-
-    array = vtkStringArray()
-    array.SetName(name)
-    for text in texts:
-        array.InsertNextValue(text)
-    grid.GetFieldData().AddArray(array)
+    """Field data of texts, as the bytes of their lines: meshio reads no file with an array of texts."""
+    grid.field_data[name] = np.frombuffer("\n".join(texts).encode() or b"\n", dtype=np.uint8)
 
 
 def vtu(grid: Any) -> bytes:

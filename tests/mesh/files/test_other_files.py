@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import pathlib
 import sys
 
 import numpy as np
@@ -13,6 +14,7 @@ from magshell.errors import InputError
 
 from .same import described
 
+DATA = pathlib.Path(__file__).parent / "data"
 needs_meshio = pytest.mark.skipif(importlib.util.find_spec("meshio") is None, reason="needs the extra magshell[meshio]")
 
 
@@ -24,7 +26,19 @@ def vtk_grid(points, cells, kind):
     return pyvista.UnstructuredGrid(rows.ravel(), np.full(len(cells), kind, dtype=np.uint8), np.asarray(points))
 
 
-def test_a_step_file_of_the_program(tmp_path):
+def as_texts(grid, name, texts):
+    """Names as older versions wrote them."""
+    from vtkmodules.vtkCommonCore import vtkStringArray
+
+    array = vtkStringArray()
+    array.SetName(name)
+    for text in texts:
+        array.InsertNextValue(text)
+    grid.GetFieldData().AddArray(array)
+
+
+@pytest.mark.parametrize("old", [False, True])
+def test_a_step_file_of_the_program(tmp_path, old):
     """Its element groups come back, and that its lengths are in m."""
     from magshell.output.registry import OUTPUTS
     from magshell.output.vtu import _add_texts, vtu
@@ -32,7 +46,7 @@ def test_a_step_file_of_the_program(tmp_path):
     mesh = ms.mesh.rectangle(4e-3, 2e-3, (4, 2))
     grid = vtk_grid(mesh.points, mesh.elements, 23)
     grid.cell_data[OUTPUTS["element_group"].name] = np.array([1, 1, 2, 2, 1, 0, 0, 0])
-    _add_texts(grid, "element_group_names", ["Flügel", "rest"])
+    (as_texts if old else _add_texts)(grid, "element_group_names", ["Flügel", "rest"])
     (tmp_path / "step-0000.vtu").write_bytes(vtu(grid))
     found = ms.mesh.read(tmp_path / "step-0000.vtu")
     assert np.array_equal(found.points, mesh.points)
@@ -70,6 +84,61 @@ def test_files_that_are_no_mesh(tmp_path):
         ms.mesh.read(tmp_path, unit="m")
 
 
+def test_surfaces_that_are_not_read_are_refused(tmp_path):
+    """In every format: without them the mesh would have holes."""
+    points = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [2, 1, 0], [1, 1.5, 0], [0, 1, 0.0]])
+    vtk_grid(points[[0, 1, 3, 4, 5]], np.array([[0, 1, 2, 3, 4]]), 7).save(tmp_path / "five.vtu")
+    with pytest.raises(InputError, match=r"five.vtu: .*cannot be used: 1 of type 7 \(vtkPolygon\) with 5 nodes.*holes"):
+        ms.mesh.read(tmp_path / "five.vtu", unit="m")
+    vtk_grid(points, np.array([[0, 1, 2, 3, 4, 5]]), 6).save(tmp_path / "strip.vtk")
+    with pytest.raises(InputError, match=r"strip.vtk: .*1 of type 6 \(vtkTriangleStrip\) with 6 nodes"):
+        ms.mesh.read(tmp_path / "strip.vtk", unit="m")
+
+
+@pytest.mark.parametrize(
+    ("kind", "count", "called"),
+    [
+        (69, 10, "vtkLagrangeTriangle"),
+        (70, 16, "vtkLagrangeQuadrilateral"),
+        (70, 8, "vtkLagrangeQuadrilateral"),
+        (76, 6, "vtkBezierTriangle"),
+        (77, 9, "vtkBezierQuadrilateral"),
+    ],
+)
+def test_other_orders_and_bezier_cells_are_refused(tmp_path, kind, count, called):
+    points = np.random.default_rng(1).random((count, 3))
+    vtk_grid(points, np.arange(count)[None], kind).save(tmp_path / "cell.vtu")
+    with pytest.raises(InputError, match=rf"cell.vtu: .*1 of type {kind} \({called}\) with {count} nodes"):
+        ms.mesh.read(tmp_path / "cell.vtu", unit="m")
+
+
+@pytest.mark.parametrize(("name", "triangles", "quads"), [("strip_69", 32, 0), ("strip_70", 0, 16)])
+def test_lagrange_cells(name, triangles, quads):
+    """A strip 20 × 5, its nodes on straight lines."""
+    mesh = ms.mesh.read(DATA / f"{name}.vtu", unit="mm")
+    assert (mesh.triangles.sum(), (~mesh.triangles).sum()) == (triangles, quads)
+    assert np.allclose(np.ptp(mesh.points, axis=0), (20e-3, 5e-3, 0))
+    if triangles:
+        assert len(mesh.points) == 85
+    area = 0.5 * np.linalg.norm(
+        np.cross(*(mesh.points[mesh.elements[:, [2, 3]]] - mesh.points[mesh.elements[:, [0, 1]]]).transpose(1, 0, 2)),
+        axis=1,
+    )
+    assert np.isclose(area.sum(), 100e-6)
+
+
+@pytest.mark.parametrize("suffix", [".vtp", ".vtk"])
+def test_polygons_of_vtk(tmp_path, suffix):
+    """As VTK and PyVista write surfaces: triangles and quadrilaterals in one file."""
+    import pyvista
+
+    points = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0], [1, 1, 0.0]])
+    pyvista.PolyData(points, faces=[4, 0, 1, 4, 3, 3, 1, 2, 4]).save(tmp_path / f"part{suffix}")
+    mesh = ms.mesh.read(tmp_path / f"part{suffix}", unit="mm", second_order=True)
+    assert mesh.triangles.tolist() == [False, True]
+    assert np.allclose(mesh.points[mesh.elements[0, :4]], 1e-3 * points[[0, 1, 4, 3]])
+
+
 def test_solids_of_vtk_are_refused(tmp_path):
     points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
     vtk_grid(points, np.array([[0, 1, 2, 3]]), 10).save(tmp_path / "solid.vtu")
@@ -78,10 +147,10 @@ def test_solids_of_vtk_are_refused(tmp_path):
 
 
 def test_without_meshio(tmp_path, monkeypatch):
-    (tmp_path / "part.med").write_bytes(b"x")
+    (tmp_path / "part.off").write_bytes(b"x")
     monkeypatch.setitem(sys.modules, "meshio", None)
-    with pytest.raises(InputError, match=r"part.med: a file '.med' is read through meshio.*magshell\[meshio\]"):
-        ms.mesh.read(tmp_path / "part.med", unit="m")
+    with pytest.raises(InputError, match=r"part.off: a file '.off' is read through meshio.*magshell\[meshio\]"):
+        ms.mesh.read(tmp_path / "part.off", unit="m")
 
 
 @needs_meshio
@@ -123,6 +192,37 @@ def test_what_meshio_does_not_read(tmp_path):
     (tmp_path / "part.xyz").write_bytes(b"x")
     with pytest.raises(InputError, match=r"part.xyz: files '.xyz' are not known. There is: .*\.msh"):
         ms.mesh.read(tmp_path / "part.xyz", unit="m")
-    (tmp_path / "part.bdf").write_bytes(b"GRID,1,x\n")
-    with pytest.raises(InputError, match=r"part.bdf: meshio cannot read it"):
-        ms.mesh.read(tmp_path / "part.bdf", unit="m")
+    (tmp_path / "part.off").write_bytes(b"OFF\nx\n")
+    with pytest.raises(InputError, match=r"part.off: meshio cannot read it"):
+        ms.mesh.read(tmp_path / "part.off", unit="m")
+
+
+@needs_meshio
+def test_the_list_of_formats_is_what_can_be_read(tmp_path):
+    """Not what meshio only writes, such as .svg, nor what it reads by a package that is not there."""
+    import meshio
+
+    from magshell.mesh.files.reading import _READERS
+
+    (tmp_path / "part.svg").write_text("<svg/>")
+    with pytest.raises(InputError, match=r"files '.svg' are not known") as error:
+        ms.mesh.read(tmp_path / "part.svg", unit="m")
+    listed = str(error.value).rpartition("There is: ")[2].split(", ")
+    assert set(_READERS) - {".med"} <= set(listed)
+    assert (".med" in listed) == (importlib.util.find_spec("h5py") is not None)
+    assert {".stl", ".obj", ".ply", ".off", ".mesh"} <= set(listed)
+    for ending in set(listed) - set(_READERS):
+        assert set(meshio.extension_to_filetypes[ending]) <= set(meshio._helpers.reader_map), ending
+    if importlib.util.find_spec("netCDF4") is None:
+        assert ".exo" not in listed
+        (tmp_path / "part.exo").write_bytes(b"")
+        with pytest.raises(InputError, match=r"part.exo: meshio needs netCDF4 to read it.*pip install netCDF4"):
+            ms.mesh.read(tmp_path / "part.exo", unit="m")
+
+
+@needs_meshio
+def test_a_file_in_which_meshio_finds_no_end(tmp_path, monkeypatch):
+    monkeypatch.setattr("magshell.mesh.files.reading.SECONDS", 2)
+    (tmp_path / "part.node").write_bytes(b"")
+    with pytest.raises(InputError, match=r"^part.node: meshio finds no end in it"):
+        ms.mesh.read(tmp_path / "part.node", unit="m")

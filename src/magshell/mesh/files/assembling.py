@@ -15,6 +15,7 @@ from magshell.mesh.files.contents import Contents
 from magshell.mesh.files.names import named
 from magshell.mesh.files.orientation import agreeing
 from magshell.mesh.files.raising import raise_order
+from magshell.mesh.files.skins import skin_of_a_solid
 from magshell.mesh.mesh import Mesh
 from magshell.units import LENGTH
 
@@ -53,7 +54,7 @@ class FileMesh(Mesh):
     origin: Origin = field(kw_only=True)
 
 
-def assemble(contents: Contents, name: str, unit: str, second_order: bool) -> FileMesh:
+def assemble(contents: Contents, name: str, unit: str, second_order: bool, closed: bool = False) -> FileMesh:
     """The mesh that a file holds.
 
     Parameters
@@ -65,11 +66,14 @@ def assemble(contents: Contents, name: str, unit: str, second_order: bool) -> Fi
         Of its lengths.
     second_order : bool
         Whether elements of first order get middles.
+    closed : bool
+        Whether a closed surface with sharp edges or parallel faces is meant, and not the skin of a solid.
 
     Raises
     ------
     InputError
-        Solids, elements that cannot be used, no surface, elements of first order that are not to be raised, a surface with one side only.
+        Solids and their skins, elements that cannot be used, no surface, elements of first order that are not to be
+        raised, a surface with one side only.
     MeshError
         What `Mesh` refuses.
     """
@@ -84,6 +88,8 @@ def assemble(contents: Contents, name: str, unit: str, second_order: bool) -> Fi
     if turned:
         changes.append(f"{turned} of {len(rows)} elements turned, so that the normals of neighbours agree")
     points = contents.points
+    if not closed:
+        _no_skin(skin_of_a_solid(points, rows), name, len(rows))
     node_groups = _node_groups(contents)
     if (rows == MISSING).any():
         _may_be_raised(rows, name, second_order)
@@ -166,6 +172,15 @@ def _surface(contents: Contents, name: str, changes: list[str]) -> tuple[IntArra
             "physical groups, give the surface one: gmsh saves only elements of physical groups."
         )
     return rows, groups
+
+
+def _no_skin(reason: str, name: str, count: int) -> None:
+    if reason:
+        raise InputError(
+            f"{name}: is the skin of a solid: {count} elements are a closed surface, and {reason}. A shell is the mesh "
+            "of a mid-surface, and its thickness is a number in the problem file: export that surface. If the closed "
+            "surface is the shell, as of a thin-walled box, write closed = true (magshell mesh: --closed)."
+        )
 
 
 def _triangles_from_quads(rows: IntArray) -> IntArray:

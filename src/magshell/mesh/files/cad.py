@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import os
 import pathlib
-import re
 import tempfile
 from typing import Any, NamedTuple
 
@@ -18,6 +17,7 @@ from magshell.mesh.files.contents import GROUPED
 from magshell.mesh.files.cutting import with_bad_ones_cut
 from magshell.mesh.files.from_gmsh import contents_of
 from magshell.mesh.files.paths import GEOMETRY, readable, textual
+from magshell.mesh.files.scripts import SCRIPTS, put_alone
 from magshell.mesh.files.session import required, session
 from magshell.mesh.files.units import agreed, length_unit
 from magshell.mesh.geometry import diagonal_normals
@@ -28,9 +28,6 @@ KNOWS_ITS_UNIT = (".step", ".stp", ".iges", ".igs")
 CONVERTED = "mm"
 IGES = (".iges", ".igs")
 """Formats in which a closed surface, as a tube, has its seam twice: the nodes there are joined."""
-SCRIPTS = (".geo", ".geo_unrolled")
-_NAMING = re.compile(rb'\b(?:Include|Merge|ShapeFromFile)\b[\s(]*"(?!/|\w:)')
-"""What stands in a script before the name of a file beside it."""
 DEFAULT_ELEMENTS = 800
 """About as many elements does a mesh have whose size nobody said."""
 MOST_ELEMENTS = 1_000_000
@@ -79,7 +76,13 @@ class Candidate(NamedTuple):
         return not self.triangles and self.worst >= GOOD
 
 
-def from_cad(file: str | os.PathLike[str], size: float | None = None, unit: str | None = None) -> FileMesh:
+def from_cad(
+    file: str | os.PathLike[str],
+    size: float | None = None,
+    unit: str | None = None,
+    trust_script: bool = False,
+    closed: bool = False,
+) -> FileMesh:
     """Mesh a geometry with gmsh (the extra `magshell[gmsh]`).
 
     Several of gmsh's algorithms are tried until one gives quadrilaterals only, without a bad corner; else the best is
@@ -95,6 +98,11 @@ def from_cad(file: str | os.PathLike[str], size: float | None = None, unit: str 
         Length of an element's side, m; without it that of the `.geo` file, or such that there are about 800 elements.
     unit : str, optional
         Of the lengths in a `.geo` or `.brep` file; STEP and IGES files say it themselves.
+    trust_script : bool
+        Whether a `.geo` file may do all that gmsh's scripts can do: run programs, write and read files. Otherwise only
+        statements that draw a geometry and say how it is to be meshed are let through, others refused.
+    closed : bool
+        Whether closed surfaces with sharp edges or parallel faces are meant as shells, as for `read`.
 
     Returns
     -------
@@ -104,7 +112,7 @@ def from_cad(file: str | os.PathLike[str], size: float | None = None, unit: str 
     ------
     InputError
         gmsh is not there; no such file; a unit that is missing or superfluous; a geometry with a volume or without a
-        surface; gmsh's own errors.
+        surface; a script that does more than draw; gmsh's own errors.
     """
     path, name = pathlib.Path(file), pathlib.Path(file).name
     suffix = path.suffix.lower()
@@ -118,12 +126,15 @@ def from_cad(file: str | os.PathLike[str], size: float | None = None, unit: str 
         raise InputError(f"unit: {name} says itself in which unit its lengths are; leave the unit out")
     own = CONVERTED if suffix in KNOWS_ITS_UNIT else agreed(unit, None, name)
     required(name)
-    return apart(_mesh, path, None if size is None else size / length_unit(own), own, program="gmsh", name=name)
+    in_unit = None if size is None else size / length_unit(own)
+    with tempfile.TemporaryDirectory() as folder:
+        opened = path if trust_script else put_alone(path, pathlib.Path(folder))
+        return apart(_mesh, opened, name, in_unit, own, closed, program="gmsh", name=name)
 
 
-def _mesh(path: pathlib.Path, size: float | None, unit: str) -> FileMesh:
+def _mesh(path: pathlib.Path, name: str, size: float | None, unit: str, closed: bool) -> FileMesh:
     """What `from_cad` returns; the size in the file's unit."""
-    name, suffix = path.name, path.suffix.lower()
+    suffix = path.suffix.lower()
     with session(name) as gmsh:
         open_geometry(gmsh, path, name)
         expected = set_size(gmsh, size, unit, suffix)
@@ -131,14 +142,13 @@ def _mesh(path: pathlib.Path, size: float | None, unit: str) -> FileMesh:
         attempts = ATTEMPTS[STRUCTURED:] if structured else ATTEMPTS
         if expected > MANY:
             attempts = tuple(sorted(attempts, key=lambda each: (not each.recombine, each == QUASI_STRUCTURED)))
-        return _best(gmsh, name, unit, attempts)
+        return _best(gmsh, name, unit, closed, attempts)
 
 
 def open_geometry(gmsh: Any, path: pathlib.Path, name: str) -> None:
     """Load the geometry; refuse volumes; name surfaces and curves if nothing has a name."""
-    with tempfile.TemporaryDirectory() as folder:
-        gmsh.open(str(_ended(path, pathlib.Path(folder))))
-        gmsh.model.occ.synchronize()
+    gmsh.open(str(path))
+    gmsh.model.occ.synchronize()
     if gmsh.model.getEntities(3):
         raise InputError(
             f"{name}: holds {len(gmsh.model.getEntities(3))} solid(s). A shell is the mesh of a mid-surface, and its "
@@ -154,15 +164,6 @@ def open_geometry(gmsh: Any, path: pathlib.Path, name: str) -> None:
         for dimension in (2, 1):
             for _, entity in gmsh.model.getEntities(dimension):
                 _name_entity(gmsh, dimension, entity)
-
-
-def _ended(path: pathlib.Path, folder: pathlib.Path) -> pathlib.Path:
-    """The file, or of a script whose last line has no end a copy in which it has: gmsh would leave that line out."""
-    if path.suffix.lower() not in SCRIPTS or path.read_bytes()[-1:] in (b"\n", b""):
-        return path
-    copy, beside = folder / path.name, f"{path.parent.absolute().as_posix()}/".encode()
-    copy.write_bytes(_NAMING.sub(lambda naming: naming[0] + beside, path.read_bytes()) + b"\n")
-    return copy
 
 
 def _name_entity(gmsh: Any, dimension: int, entity: int) -> None:
@@ -224,7 +225,7 @@ def _area(gmsh: Any) -> float:
     return float(np.linalg.norm(diagonal_normals(contents.points[corners[:, :4]]), axis=1).sum())
 
 
-def _best(gmsh: Any, name: str, unit: str, attempts: tuple[Attempt, ...]) -> FileMesh:
+def _best(gmsh: Any, name: str, unit: str, closed: bool, attempts: tuple[Attempt, ...]) -> FileMesh:
     """The first good mesh, else the best one; of triangles only if there is no other."""
     best: Candidate | None = None
     reason = f"{name}: gmsh makes no elements of it"
@@ -232,7 +233,7 @@ def _best(gmsh: Any, name: str, unit: str, attempts: tuple[Attempt, ...]) -> Fil
         if best is not None and (best.good or (best.worst >= GOOD and not attempt.recombine)):
             break
         try:
-            candidate = meshed(gmsh, name, unit, attempt)
+            candidate = meshed(gmsh, name, unit, attempt, closed)
         except InputError as error:
             reason = str(error)
         except Exception as error:  # gmsh raises Exception itself
@@ -244,7 +245,7 @@ def _best(gmsh: Any, name: str, unit: str, attempts: tuple[Attempt, ...]) -> Fil
     return best.mesh
 
 
-def meshed(gmsh: Any, name: str, unit: str, attempt: Attempt) -> Candidate:
+def meshed(gmsh: Any, name: str, unit: str, attempt: Attempt, closed: bool = False) -> Candidate:
     """A mesh of second order made in one way."""
     option = gmsh.option.setNumber
     gmsh.model.mesh.clear()
@@ -258,7 +259,7 @@ def meshed(gmsh: Any, name: str, unit: str, attempt: Attempt) -> Candidate:
     if name.lower().endswith(IGES):
         gmsh.model.mesh.removeDuplicateNodes()
     _put_on_surfaces(gmsh)
-    mesh = with_bad_ones_cut(assemble(contents_of(gmsh, name), name, unit, second_order=False), GOOD)
+    mesh = with_bad_ones_cut(assemble(contents_of(gmsh, name), name, unit, False, closed), GOOD)
     triangles = int(mesh.triangles.sum())
     return Candidate(mesh, triangles, worst(mesh)["scaled_jacobian"].value)
 

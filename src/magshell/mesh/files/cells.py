@@ -36,7 +36,9 @@ QUAD8 = Kind("8-node quadrilaterals", 2, 8, (0, 1, 2, 3, 4, 5, 6, 7))
 QUAD9 = Kind("9-node quadrilaterals", 2, 9, (0, 1, 2, 3, 4, 5, 6, 7))
 QUAD4 = Kind("4-node quadrilaterals", 2, 4, (0, 1, 2, 3, -1, -1, -1, -1))
 TRIANGLE6 = Kind("6-node triangles", 2, 6, (0, 1, 2, 2, 3, 4, 2, 5))
+TRIANGLE7 = Kind("7-node triangles", 2, 7, (0, 1, 2, 2, 3, 4, 2, 5))
 TRIANGLE3 = Kind("3-node triangles", 2, 3, (0, 1, 2, 2, -1, -1, 2, -1))
+PIXEL = Kind("4-node quadrilaterals", 2, 4, (0, 1, 3, 2, -1, -1, -1, -1))
 LINE3 = Kind("3-node lines", 1, 3, (0, 1, 2))
 LINE2 = Kind("2-node lines", 1, 2, (0, 1, -1))
 POINT = Kind("points", 0, 1, (0,))
@@ -45,10 +47,23 @@ GMSH = {1: LINE2, 2: TRIANGLE3, 3: QUAD4, 8: LINE3, 9: TRIANGLE6, 10: QUAD9, 15:
 """By the number that gmsh gives the type."""
 GMSH_SOLIDS = {4, 5, 6, 7, 11, 12, 13, 14, 17, 18, 19, 29, 30, 31, 71, 72, 73, 79, 80, 81, 82, 83, 90, 91, 92, 93}
 """gmsh's numbers of tetrahedra, hexahedra, prisms and pyramids."""
-VTK = {1: POINT, 3: LINE2, 5: TRIANGLE3, 9: QUAD4, 21: LINE3, 22: TRIANGLE6, 23: QUAD8, 28: QUAD9}
-"""By the number that VTK gives the type."""
-VTK_SOLIDS = {10, 11, 12, 13, 14, 24, 25, 26, 27, 29, 32, 33, 37, 42}
-"""VTK's numbers of cells with a volume."""
+VTK = {
+    1: (POINT,),
+    3: (LINE2,),
+    5: (TRIANGLE3,),
+    7: (TRIANGLE3, QUAD4),
+    8: (PIXEL,),
+    9: (QUAD4,),
+    21: (LINE3,),
+    22: (TRIANGLE6,),
+    23: (QUAD8,),
+    28: (QUAD9,),
+    34: (TRIANGLE7,),
+    68: (LINE2, LINE3),
+    69: (TRIANGLE3, TRIANGLE6, TRIANGLE7),
+    70: (QUAD4, QUAD9),
+}
+"""By the number that VTK gives the type: polygons and Lagrange cells may have several numbers of nodes."""
 MESHIO = {
     "vertex": POINT,
     "line": LINE2,

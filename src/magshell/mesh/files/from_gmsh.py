@@ -15,11 +15,12 @@ from magshell.mesh.files.session import session
 
 
 def read_with_gmsh(path: pathlib.Path, name: str) -> Contents:
-    """Read a mesh through gmsh: binary files, other versions, partitions.
+    """Read a `.msh` file through gmsh: binary files, other versions, partitions.
 
     Parameters
     ----------
     path : pathlib.Path
+        With nothing beside it: gmsh runs what stands in a file of options there.
     name : str
         Of the file, for messages.
 

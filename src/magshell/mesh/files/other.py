@@ -3,24 +3,28 @@
 from __future__ import annotations
 
 import contextlib
+import importlib.util
 import io
 import pathlib
+import warnings
 from typing import Any
 
 import numpy as np
 
 from magshell.arrays import IntArray
 from magshell.errors import InputError
+from magshell.mesh.files.apart import apart
 from magshell.mesh.files.cells import MESHIO
 from magshell.mesh.files.contents import GROUPED, Block, Contents
 from magshell.units import shortened
 
-_SOLIDS = ("tetra", "hexahedron", "wedge", "pyramid", "polyhedron")
 _TAGS = ("gmsh:physical", "medit:ref", "cell_tags", "nastran:ref")
 """Cell data that stand for groups, where a format has no names for them."""
+_NEEDED = {**dict.fromkeys(("cgns", "h5m", "hmf", "med"), "h5py"), "exodus": "netCDF4"}
+"""Packages without which meshio does not read a format."""
 
 
-def read_other(path: pathlib.Path, name: str) -> Contents:
+def read_other(path: pathlib.Path, name: str, others: tuple[str, ...], seconds: int) -> Contents:
     """Read a file in one of meshio's formats, with its sets of cells and points as groups.
 
     Parameters
@@ -28,6 +32,10 @@ def read_other(path: pathlib.Path, name: str) -> Contents:
     path : pathlib.Path
     name : str
         Of the file, for messages.
+    others : tuple of str
+        Endings of the files that are read without meshio, for messages.
+    seconds : int
+        Of CPU time that it may take.
 
     Raises
     ------
@@ -41,13 +49,27 @@ def read_other(path: pathlib.Path, name: str) -> Contents:
             f"{name}: a file '{path.suffix}' is read through meshio, which is not installed: "
             'pip install "magshell[meshio]"'
         ) from None
-    known = meshio.extension_to_filetypes
-    if path.suffix.lower() not in known:
-        listed = ", ".join(sorted({".msh", ".inp", ".vtu", ".vtk", *known}))
+    needed = _needed(meshio, path.suffix.lower())
+    if needed is None:
+        known = {ending for ending in meshio.extension_to_filetypes if _needed(meshio, ending) == ""}
+        listed = ", ".join(sorted({*others, *known}))
         raise InputError(f"{name}: files '{path.suffix}' are not known. There is: {listed}")
+    if needed:
+        raise InputError(f"{name}: meshio needs {needed} to read it, which is not installed: pip install {needed}")
+    return apart(_read, path, name, program="meshio", name=name, seconds=seconds)
+
+
+def _read(path: pathlib.Path, name: str) -> Contents:
+    """What meshio reads; on some damaged files it finds no end."""
+    import meshio
+
     said = io.StringIO()
     try:
-        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+        with (
+            contextlib.redirect_stdout(said),
+            contextlib.redirect_stderr(said),
+            warnings.catch_warnings(action="ignore"),
+        ):
             mesh = meshio.read(path)
     except SystemExit:  # meshio's way of refusing a file that no reader takes
         raise InputError(f"{name}: meshio cannot read it: {shortened(_last(said.getvalue()))}") from None
@@ -55,6 +77,15 @@ def read_other(path: pathlib.Path, name: str) -> Contents:
         reason = shortened(" ".join(str(error).split())) or type(error).__name__
         raise InputError(f"{name}: meshio cannot read it: {reason}") from None
     return contents_of_meshio(mesh, name)
+
+
+def _needed(meshio: Any, ending: str) -> str | None:
+    """What is missing for meshio to read such files; empty if nothing, None if it cannot, as where it only writes."""
+    kinds = meshio.extension_to_filetypes.get(ending, [])
+    if not kinds or ending.count(".") > 1 or not set(kinds) <= set(meshio._helpers.reader_map):
+        return None
+    needed = (_NEEDED[kind] for kind in kinds if kind in _NEEDED)
+    return next((package for package in needed if importlib.util.find_spec(package) is None), "")
 
 
 def _last(text: str) -> str:
@@ -69,13 +100,17 @@ def contents_of_meshio(mesh: Any, name: str) -> Contents:
     points = np.pad(points, ((0, 0), (0, 3 - points.shape[1])))
     tags = next((mesh.cell_data[key] for key in _TAGS if key in mesh.cell_data), None)
     blocks, solids, notes, start = [], 0, [], 0
+    unread: dict[str, int] = {}
     for number, cells in enumerate(mesh.cells):
         kind = MESHIO.get(cells.type)
         numbers = start + np.arange(len(cells.data))
         start += len(cells.data)
         if kind is None:
-            solids += len(cells.data) if cells.type.startswith(_SOLIDS) else 0
-            if not cells.type.startswith(_SOLIDS):
+            if cells.dim == 3:
+                solids += len(cells.data)
+            elif cells.dim == 2:
+                unread[cells.type] = unread.get(cells.type, 0) + len(cells.data)
+            else:
                 notes.append(f"{len(cells.data)} elements of type {cells.type} left out")
             continue
         nodes = np.array(cells.data, dtype=np.int64).reshape(-1, kind.nodes)
@@ -93,7 +128,7 @@ def contents_of_meshio(mesh: Any, name: str) -> Contents:
             }
         blocks.append(Block(kind, numbers, nodes, groups))
     node_groups = {group: _inside(members, len(points)) for group, members in mesh.point_sets.items()}
-    return Contents(points, blocks, node_groups, solids=solids, notes=tuple(notes))
+    return Contents(points, blocks, node_groups, solids=solids, unread=unread, notes=tuple(notes))
 
 
 def _inside(members: Any, count: int) -> IntArray:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import os
 import pathlib
+import tempfile
+from collections.abc import Callable
+from importlib.util import find_spec
 
 from magshell.errors import InputError
 from magshell.mesh.files.apart import apart
@@ -16,20 +19,26 @@ SECONDS, BYTES_PER_SECOND = 60, 200_000
 """Of CPU time that another program has for a file of any size, and the least that it reads."""
 
 
-def read(file: str | os.PathLike[str], unit: str | None = None, second_order: bool = False) -> FileMesh:
+def read(
+    file: str | os.PathLike[str], unit: str | None = None, second_order: bool = False, closed: bool = False
+) -> FileMesh:
     """Read a mesh with its groups.
 
     Parameters
     ----------
     file : path
         gmsh's `.msh` (formats 4.1 and 2.2 in text; all others if the extra `magshell[gmsh]` is installed), Abaqus'
-        `.inp`, VTK's `.vtu` and `.vtk`, and what meshio reads if the extra `magshell[meshio]` is installed.
+        `.inp`, Nastran's `.bdf`, `.nas` and `.fem`, universal files `.unv`, VTK's `.vtu`, `.vtp` and `.vtk`; with the
+        extra `magshell[meshio]` also `.med` and what meshio reads, such as `.stl`, `.obj` and `.ply`.
     unit : str, optional
         Of the lengths in the file: m, cm, mm or um. Required, unless the file says it: those of `write` and of
         `magshell mesh` do, and the program's own `.vtu` files.
     second_order : bool
         Whether elements of first order are raised to second, with middles on the curved surface that they stand for;
         refused otherwise.
+    closed : bool
+        Whether a closed surface with sharp edges, or with two flat faces that are parallel, is meant as a shell, like
+        a thin-walled box. Otherwise it is taken for the skin of a solid and refused.
 
     Returns
     -------
@@ -54,25 +63,49 @@ def read(file: str | os.PathLike[str], unit: str | None = None, second_order: bo
         )
     readable(path)
     contents = _contents(path, name)
-    return assemble(contents, name, agreed(unit, contents.unit, name), second_order)
+    return assemble(contents, name, agreed(unit, contents.unit, name), second_order, closed)
 
 
 def _contents(path: pathlib.Path, name: str) -> Contents:
-    match path.suffix.lower():
-        case ".msh":
-            return _msh(path, name)
-        case ".inp":
-            from magshell.mesh.files.inp import read_inp
+    reader = _READERS.get(path.suffix.lower())
+    if reader is not None:
+        return reader(path, name)
+    from magshell.mesh.files.other import read_other
 
-            return read_inp(path.read_bytes(), name)
-        case ".vtu" | ".vtk":
-            from magshell.mesh.files.vtk import read_vtk
+    own = tuple(ending for ending in _READERS if ending != ".med" or find_spec("h5py"))
+    return read_other(path, name, own, _seconds(path))
 
-            return apart(read_vtk, path, name, program="VTK", name=name, seconds=_seconds(path))
-        case _:
-            from magshell.mesh.files.other import read_other
 
-            return read_other(path, name)
+def _inp(path: pathlib.Path, name: str) -> Contents:
+    from magshell.mesh.files.inp import read_inp
+
+    return read_inp(path.read_bytes(), name)
+
+
+def _unv(path: pathlib.Path, name: str) -> Contents:
+    from magshell.mesh.files.unv import read_unv
+
+    return read_unv(path.read_bytes(), name)
+
+
+def _nastran(path: pathlib.Path, name: str) -> Contents:
+    from magshell.mesh.files.nastran import read_nastran
+
+    return read_nastran(path.read_bytes(), name)
+
+
+def _med(path: pathlib.Path, name: str) -> Contents:
+    if find_spec("h5py") is None:
+        raise InputError(f'{name}: is read by h5py, which is not installed: pip install "magshell[meshio]"')
+    from magshell.mesh.files.med import read_med
+
+    return apart(read_med, path, name, program="h5py", name=name, seconds=_seconds(path))
+
+
+def _vtk(path: pathlib.Path, name: str) -> Contents:
+    from magshell.mesh.files.vtk import read_vtk
+
+    return apart(read_vtk, path, name, program="VTK", name=name, seconds=_seconds(path))
 
 
 def _msh(path: pathlib.Path, name: str) -> Contents:
@@ -86,10 +119,24 @@ def _msh(path: pathlib.Path, name: str) -> Contents:
         if not installed():
             raise InputError(f"{error}; or let gmsh read it: {INSTALL}") from None
     from magshell.mesh.files.from_gmsh import read_with_gmsh
+    from magshell.mesh.files.scripts import put_alone
 
-    return apart(read_with_gmsh, path, name, program="gmsh", name=name, seconds=_seconds(path))
+    with tempfile.TemporaryDirectory() as folder:
+        copy = put_alone(path, pathlib.Path(folder))
+        return apart(read_with_gmsh, copy, name, program="gmsh", name=name, seconds=_seconds(path))
 
 
 def _seconds(path: pathlib.Path) -> int:
     """What another program has to read a file: some loop for ever on a damaged one."""
     return SECONDS + path.stat().st_size // BYTES_PER_SECOND
+
+
+_READERS: dict[str, Callable[[pathlib.Path, str], Contents]] = {
+    ".msh": _msh,
+    ".inp": _inp,
+    ".unv": _unv,
+    ".med": _med,
+    **dict.fromkeys((".bdf", ".nas", ".fem"), _nastran),
+    **dict.fromkeys((".vtu", ".vtp", ".vtk"), _vtk),
+}
+"""By the ending of a file; meshio reads others."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -42,6 +43,8 @@ def session(name: str) -> Iterator[Any]:
         gmsh does not load, or an error of gmsh in the block, in its words.
     """
     gmsh = _loaded(name)
+    for variable in [each for each in os.environ if each.startswith("GMSH")]:
+        del os.environ[variable]  # gmsh would load plugins from where they say
     gmsh.initialize(readConfigFiles=False, interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
@@ -49,10 +52,16 @@ def session(name: str) -> Iterator[Any]:
     except InputError:
         raise
     except Exception as error:  # gmsh raises Exception itself
-        reason = re.sub(rf"'[^']*{re.escape(name)}', ", "", " ".join(str(error).split()))
+        reason = re.sub(r"'(?:[^']*[/\\])?([^'/\\]*)', (line)", _place, " ".join(str(error).split()))
+        reason = reason.replace(f"{name}, line", "line")
         raise InputError(f"{name}: gmsh cannot do it: {_bearable(reason)}") from None
     finally:
         gmsh.finalize()
+
+
+def _place(found: re.Match[str]) -> str:
+    """File and line as gmsh says them, without the folder."""
+    return f"{found[1]}, {found[2]}"
 
 
 def _bearable(text: str) -> str:

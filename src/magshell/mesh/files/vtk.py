@@ -1,4 +1,4 @@
-"""VTK's files: `.vtu` and `.vtk`, with the element groups of the program's own step files."""
+"""VTK's files: `.vtu`, `.vtp` and `.vtk`, with the element groups of the program's own step files."""
 
 from __future__ import annotations
 
@@ -9,11 +9,13 @@ import numpy as np
 
 from magshell.arrays import IntArray
 from magshell.errors import InputError
-from magshell.mesh.files.cells import VTK, VTK_SOLIDS
+from magshell.mesh.files.cells import VTK
 from magshell.mesh.files.contents import Block, Contents
 
 NAMES, MEMBERSHIP = "element_group_names", "element_group"
-"""Field data and cell array of the program's own files: names, and the number of each element's group, from 1."""
+"""Field data and cell array of the program's own files: names, and the number of each element's group, from 1.
+
+The names are the bytes of lines in UTF-8, or, in older files, an array of texts."""
 _OWN_UNIT = "m"
 
 
@@ -48,16 +50,22 @@ def read_vtk(path: pathlib.Path, name: str) -> Contents:
     _sound(starts, nodes, len(types), len(points), name)
     own = grid.GetFieldData().GetAbstractArray(NAMES) is not None
     names, membership = _groups(grid, len(types))
-    blocks, solids, notes = [], 0, []
-    for vtk_type in np.unique(types).tolist():
-        cells = np.flatnonzero(types == vtk_type)
-        if vtk_type in VTK_SOLIDS:
-            solids += len(cells)
+    blocks, solids, notes, unread = [], 0, [], {}
+    kinds, which, counts = np.unique(
+        np.column_stack([types, np.diff(starts)]), axis=0, return_inverse=True, return_counts=True
+    )
+    for number, (vtk_type, width) in enumerate(kinds.tolist()):
+        kind = next((kind for kind in VTK.get(vtk_type, ()) if kind.nodes == width), None)
+        if kind is None:
+            called, dimension = _cell_type(vtk_type)
+            if dimension == 3:
+                solids += int(counts[number])
+            elif dimension == 2 or dimension is None:
+                unread[f"{vtk_type} ({called}) with {width} nodes"] = int(counts[number])
+            else:
+                notes.append(f"{counts[number]} cells of VTK's type {vtk_type} ({called}) left out")
             continue
-        kind = VTK.get(vtk_type)
-        if kind is None or (np.diff(starts)[cells] != kind.nodes).any():
-            notes.append(f"{len(cells)} cells of VTK's type {vtk_type} left out")
-            continue
+        cells = np.flatnonzero(which.ravel() == number)
         rows = nodes[starts[cells][:, None] + np.arange(kind.nodes)]
         groups = {
             group: np.flatnonzero(membership[cells] == number)
@@ -65,16 +73,27 @@ def read_vtk(path: pathlib.Path, name: str) -> Contents:
             if (membership[cells] == number).any()
         }
         blocks.append(Block(kind, cells, rows, groups))
-    return Contents(points, blocks, solids=solids, unit=_OWN_UNIT if own else None, notes=tuple(notes))
+    unit = _OWN_UNIT if own else None
+    return Contents(points, blocks, solids=solids, unread=unread, unit=unit, notes=tuple(notes))
+
+
+def _cell_type(number: int) -> tuple[str, int | None]:
+    """VTK's name of a type of cells, and its dimension; None where VTK itself does not know it."""
+    from vtkmodules.vtkCommonDataModel import vtkGenericCell
+
+    cell = vtkGenericCell.InstantiateCell(number)
+    return (cell.GetClassName(), int(cell.GetCellDimension())) if cell is not None else ("unknown", None)
 
 
 def _grid(path: pathlib.Path, name: str) -> Any:
     """What VTK reads, with its complaints kept from the terminal."""
     from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
-    from vtkmodules.vtkIOLegacy import vtkUnstructuredGridReader
-    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+    from vtkmodules.vtkFiltersCore import vtkAppendFilter
+    from vtkmodules.vtkIOLegacy import vtkGenericDataObjectReader
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 
-    reader = vtkXMLUnstructuredGridReader() if path.suffix.lower() == ".vtu" else vtkUnstructuredGridReader()
+    readers = {".vtu": vtkXMLUnstructuredGridReader, ".vtp": vtkXMLPolyDataReader}
+    reader = readers.get(path.suffix.lower(), vtkGenericDataObjectReader)()
     usual, listening = vtkOutputWindow.GetInstance(), vtkStringOutputWindow()
     vtkOutputWindow.SetInstance(listening)
     try:
@@ -82,9 +101,18 @@ def _grid(path: pathlib.Path, name: str) -> Any:
         reader.Update()
     finally:
         vtkOutputWindow.SetInstance(usual)
-    if "ERR" in listening.GetOutput().upper():
-        raise InputError(f"{name}: cannot be read as an unstructured grid of VTK; it is damaged, or of another kind")
-    return reader.GetOutput()
+    found = reader.GetOutput()
+    known = found is not None and found.GetClassName() in ("vtkUnstructuredGrid", "vtkPolyData")
+    if not known or "ERR" in listening.GetOutput().upper():
+        raise InputError(
+            f"{name}: cannot be read as an unstructured grid or polygons of VTK; it is damaged, or of another kind"
+        )
+    if found.GetClassName() == "vtkPolyData":
+        joined = vtkAppendFilter()
+        joined.AddInputData(found)
+        joined.Update()
+        found = joined.GetOutput()
+    return found
 
 
 def _array(data: Any) -> Any:
@@ -110,4 +138,12 @@ def _groups(grid: Any, cells: int) -> tuple[list[str], IntArray]:
     if names is None or membership is None:
         return [], np.zeros(cells, dtype=np.int64)
     numbers = np.array(_array(membership)).reshape(cells, -1)[:, 0]
-    return [str(names.GetValue(row)) for row in range(names.GetNumberOfValues())], numbers.astype(np.int64)
+    return _texts(names), numbers.astype(np.int64)
+
+
+def _texts(array: Any) -> list[str]:
+    """What `magshell.output.vtu` wrote as texts."""
+    if array.GetClassName() == "vtkStringArray":
+        return [str(array.GetValue(row)) for row in range(array.GetNumberOfValues())]
+    text = np.array(_array(array)).astype(np.uint8).tobytes().decode("utf-8", "replace")
+    return text.split("\n") if text.strip("\n") else []

@@ -33,7 +33,7 @@ def build_mesh(table: schema.Mesh, folder: pathlib.Path) -> Mesh:
 
 def _read(table: schema.MeshFile, folder: pathlib.Path) -> Mesh:
     try:
-        mesh = read(folder / table.file, table.unit, table.second_order)
+        mesh = read(folder / table.file, table.unit, table.second_order, table.closed)
     except InputError as error:
         of_unit = str(error).startswith("unit: ")
         raise InputError(f"mesh.{error}" if of_unit else f"mesh.file: {error}") from None

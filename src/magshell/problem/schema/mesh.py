@@ -106,6 +106,7 @@ class MeshFile(_Groups):
     file: f.FileName
     unit: f.LengthUnit | None = None
     second_order: StrictBool = False
+    closed: StrictBool = False
 
 
 Generated: TypeAlias = Rectangle | Annulus | Blocks | Cylinder | SpherePatch
