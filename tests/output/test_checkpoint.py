@@ -32,7 +32,7 @@ def waypoint(number: int = 7, plain: bool = False) -> Waypoint:
             random(size=(ELEMENTS, 4, 3)),
         )  # fmt: skip
 
-    balance = Balance(*(random(size=3) for _ in range(5)), 1e-12, 3e-13)
+    balance = Balance(*(random(size=3) for _ in range(5)), 1e-12, 3e-13, 2.0, 0.1)
     point = CriticalPoint(
         2, "limit point", 1, random(), random(size=3), random(), state(), random(size=(NODES, 10)), (0, None)
     )

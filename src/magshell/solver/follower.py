@@ -26,7 +26,7 @@ PATIENCE = 2
 # A step that failed is made again with at most this part of its length along the path.
 LEAST_CUT = 0.5
 # So many steps must come nearer to the next goal by this share of the way to it.
-MOST_STEPS, PROGRESS = 200, 0.01
+MOST_STEPS, PROGRESS = 100, 0.01
 # Largest angle between a step and the direction of the path at either end: beyond it the path has been left.
 SHARPEST = np.pi / 3
 # Largest distance of a solution from its trial state, in lengths of the step: beyond it another path may have been met.
@@ -174,14 +174,14 @@ class Follower:
                 raise StepFailure(self._give_up(trial.load_factor))
 
     def _stray(self, goal: Goal) -> None:
-        """Raise StepFailure if many steps have come no nearer to the goal."""
-        if self.taken < MOST_STEPS:
+        """Raise StepFailure if the last steps came no nearer to the goal than the ones before."""
+        values = [goal.value(step) for step in self.path.steps[-self.taken :]]
+        if len(values) <= MOST_STEPS:
             return
-        values = [goal.value(step) for step in self.path.steps[-self.taken - 1 :]]
         left = np.minimum.accumulate(np.abs(goal.wanted - np.array(values)))
         least = min(PROGRESS, 10.0 * self.settings.largest_step) * left[0]
         if left[-MOST_STEPS - 1] - left[-1] < least:
-            raise StepFailure(self._strayed(goal, values[-MOST_STEPS - 1 :]))
+            raise StepFailure(self._strayed(goal, values[-MOST_STEPS:]))
 
     def _next(self, goal: Goal) -> Attempt:
         """The next trial state, and what is held in its step."""

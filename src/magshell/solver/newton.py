@@ -179,6 +179,8 @@ def factorise(system: System, assembly: Assembly) -> None:
 
 def _inverted(inverted: InvertedElement) -> StepFailure:
     element, determinant = inverted.element, inverted.determinant
+    if determinant == 0.0:
+        return StepFailure(f"the inner unknowns of element {element} cannot be eliminated")
     return StepFailure(f"element {element} is turned inside out (det F = {determinant:.2g})", element)
 
 

@@ -22,9 +22,9 @@ from magshell.solver.newton import Solution, StepFailure, System, Trial, factori
 
 # Part of a step by which the tangent of its end may be that of a state before.
 CLOSE = 1e-2
-# A step may be this many times as long as the distance to a point behind: further on, that point's difference from the
-# last one, and its round-off, say nothing.
-REACH = 10.0
+# A point closer behind than this part of a step says nothing of where the step leads: the round-off of its difference
+# from the last point is enlarged by the square of that ratio.
+REACH = 100.0
 
 Direction: TypeAlias = tuple[FloatArray, float]
 
