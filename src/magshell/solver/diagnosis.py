@@ -11,7 +11,7 @@ Three things end a path other than the physics of the body:
   there is no stable equilibrium.
 * *An element turned inside out*, where det F is far from one at its points already.
 
-Only what stands out is named as a cause; the figures are told in any case.
+Only what stands out is named as a cause; where nothing does, the figures are told.
 """
 
 from __future__ import annotations
@@ -100,39 +100,39 @@ def diagnosis(discretisation: Discretisation, state: State, loading: Loading, in
         The element that the failed step turns inside out.
     """
     measured = measure(discretisation, state, loading)
-    causes = [*_causes(discretisation, measured, inverted)]
+    causes = [*_causes(discretisation, measured)]
+    where = ""
+    if inverted is not None and (groups := _touched(discretisation, inverted)):
+        where = f" Element {inverted}, which is turned inside out, touches the support '{groups[0]}'."
     if causes:
-        return " ".join(causes)
+        return "Likely cause: " + " Also, ".join(causes) + where
     return (
-        f"In the last state nothing stands out: {_figures(measured)}. The path may bend too sharply there (a smaller "
-        "largest_step shows it), or a unit may have slipped (`magshell check` shows the magnitudes)."
+        f"In the last state nothing stands out: {_figures(measured)}.{where} The path may bend too sharply there (a "
+        "smaller largest_step shows it), or a unit may have slipped (`magshell check` shows the magnitudes)."
     )
 
 
-def _causes(discretisation: Discretisation, measured: Measures, inverted: int | None) -> Iterator[str]:
+def _causes(discretisation: Discretisation, measured: Measures) -> Iterator[str]:
     turn, squash, couple = measured
     coupling = discretisation.model.shell.material.coupling_modulus
     if couple is not None and (couple.ratio > NEAR_LIMIT or couple.ahead > RUNNING_AHEAD):
         yield (
-            f"Cause: the couple of the field is at the limit of what the micro-rotation transfers to the material: "
-            f"{100 * couple.ratio:.0f} % of it in {_place(discretisation, couple.element)}, where the micro-rotation "
-            f"runs ahead by up to {couple.ahead:.0f}° (the limit is at 45°). With a coupling_modulus of "
-            f"{_pascals(coupling)} there is no equilibrium in a stronger field; take a larger one, or a weaker field."
+            f"the couple of the field reaches the limit of what the micro-rotation transfers to the material: it is "
+            f"{100 * couple.ratio:.0f} % of that in {_place(discretisation, couple.element)}, and the micro-rotation "
+            f"runs ahead by up to {couple.ahead:.0f}° (beyond 45° nothing holds it). Take a larger coupling_modulus "
+            f"than {coupling / 1e3:.4g} kPa, or a weaker field."
         )
     if turn.angle > COARSE:
         one, other = turn.nodes
         yield (
-            f"Cause: the mesh is too coarse for the bending: {_place(discretisation, turn.element)} turns by "
+            f"the mesh is too coarse for the bending: {_place(discretisation, turn.element)} turns by "
             f"{turn.angle:.0f}° from node {one} to node {other}, where {FINE:.0f}° are safe. Take "
             f"{np.ceil(2.0 * turn.angle / FINE) / 2.0:g} times as many elements, or more, in that direction."
         )
     if squash.determinant < SQUASHED:
         yield (
-            f"Cause: the material is squashed: det F is {squash.determinant:.2g} in "
-            f"{_place(discretisation, squash.element)}."
+            f"the material is squashed: det F is {squash.determinant:.2g} in {_place(discretisation, squash.element)}."
         )
-    elif inverted is not None and _touched(discretisation, inverted):
-        yield f"The step turns {_place(discretisation, inverted)} inside out; in the last state {_figures(measured)}."
 
 
 def _figures(measured: Measures) -> str:
@@ -200,7 +200,3 @@ def _touched(discretisation: Discretisation, element: int) -> list[str]:
     mesh = discretisation.mesh
     groups = [support.group for support in discretisation.model.supports]
     return [group for group in groups if np.isin(mesh.elements[element], mesh.nodes_of(group)).any()]
-
-
-def _pascals(value: float) -> str:
-    return f"{value / 1e3:.4g} kPa"
