@@ -2,9 +2,10 @@ r"""Why a path ends: what is measured in its last converged state, and in the st
 
 Three things end a path other than the physics of the body:
 
-* *Mesh too coarse for the bending.* An edge of an element is a parabola. The angle between its two end tangents is the
-  angle that the shell turns within one element. Uniform bending by 45° in each element costs 0.3 % of the tip's
-  displacement, by 60° 0.8 %, by 90° 3 %; a layer at a clamp that is thinner than an element ends the path before.
+* *Mesh too coarse for the bending.* An edge of an element is a parabola. The angle between its two end tangents, or
+  between the directors at its ends if that is larger (twist), is what the shell turns within one element. Uniform
+  bending by 45° in each element costs 0.3 % of the tip's displacement, by 60° 0.8 %, by 90° 3 %; where bending gathers
+  in a layer that is thinner than an element, as at a clamp, a path ends earlier.
 * *Couple at its limit.* The field's couple reaches the material through the micro-rotation alone. With F = Q S and the
   micro-rotation turned by θ about n relative to Q, the energy -η/2 tr(U²) resists with (η/2) (tr S - n·S n)² sin 2θ per
   unit volume: nothing more than that with sin 2θ = 1, 2η where nothing is stretched, can be transferred, and beyond 45°
@@ -28,8 +29,8 @@ from magshell.magnetics import law
 from magshell.shell.evaluation import evaluate
 from magshell.shell.state import State
 
-# Angle (degrees) turned within an element: from here on the mesh is a likely cause, and what is recommended.
-COARSE, FINE = 45.0, 30.0
+# Angle (degrees) turned within an element: what is safe, and beyond which the mesh is a likely cause.
+SAFE = 30.0
 # Part of the greatest couple, and angle between micro-rotation and material (degrees), at which the limit is near.
 NEAR_LIMIT, RUNNING_AHEAD = 0.9, 35.0
 # det F in the last state below which an element is about to turn inside out.
@@ -37,7 +38,7 @@ SQUASHED = 0.5
 
 
 class Turn(NamedTuple):
-    """The largest angle (degrees) that an edge of an element turns from end to end, with its two nodes."""
+    """The largest angle (degrees) that the shell turns along an edge of an element, from one node to another."""
 
     angle: float
     element: int
@@ -122,12 +123,12 @@ def _causes(discretisation: Discretisation, measured: Measures) -> Iterator[str]
             f"runs ahead by up to {couple.ahead:.0f}° (beyond 45° nothing holds it). Take a larger coupling_modulus "
             f"than {coupling / 1e3:.4g} kPa, or a weaker field."
         )
-    if turn.angle > COARSE:
+    if turn.angle > SAFE:
         one, other = turn.nodes
         yield (
             f"the mesh is too coarse for the bending: {_place(discretisation, turn.element)} turns by "
-            f"{turn.angle:.0f}° from node {one} to node {other}, where {FINE:.0f}° are safe. Take "
-            f"{np.ceil(2.0 * turn.angle / FINE) / 2.0:g} times as many elements, or more, in that direction."
+            f"{turn.angle:.0f}° from node {one} to node {other}, where {SAFE:.0f}° are safe. Take "
+            f"{np.ceil(2.0 * turn.angle / SAFE) / 2.0:g} times as many elements, or more, in that direction."
         )
     if squash.determinant < SQUASHED:
         yield (
@@ -149,10 +150,16 @@ def _turn(discretisation: Discretisation, state: State) -> Turn:
     first, second = elements[:, :4], np.roll(elements[:, :4], -1, axis=1)
     a, b, middle = position[first], position[second], position[elements[:, 4:]]
     start, end = 4.0 * middle - 3.0 * a - b, 3.0 * b + a - 4.0 * middle
-    sine = np.linalg.norm(np.cross(start, end), axis=-1)
-    angles = np.degrees(np.arctan2(sine, np.sum(start * end, axis=-1)))
+    directors = discretisation.normals + state.w
+    angles = np.maximum(_angles(start, end), _angles(directors[first], directors[second]))
     element, edge = (int(index) for index in np.unravel_index(angles.argmax(), angles.shape))
     return Turn(float(angles[element, edge]), element, (int(first[element, edge]), int(second[element, edge])))
+
+
+def _angles(one: FloatArray, other: FloatArray) -> FloatArray:
+    """Between vectors (…, 3), degrees."""
+    sine = np.linalg.norm(np.cross(one, other), axis=-1)
+    return np.asarray(np.degrees(np.arctan2(sine, np.sum(one * other, axis=-1))))
 
 
 def _couple(discretisation: Discretisation, state: State, loading: Loading) -> Couple | None:
