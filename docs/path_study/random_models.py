@@ -121,7 +121,8 @@ def _cylinder(rng: np.random.Generator, refined: int) -> Shape:
 def _sphere(rng: np.random.Generator, refined: int) -> Shape:
     polar, azimuth = (rng.uniform(30.0, 50.0), rng.uniform(75.0, 150.0)), (0.0, rng.uniform(60.0, 230.0))
     radius = 1e-3 * rng.uniform(6.0, 13.0)
-    mesh = ms.mesh.sphere_patch(radius, polar, azimuth, _counts(rng, refined))
+    down, around = _counts(rng, refined)
+    mesh = ms.mesh.sphere_patch(radius, polar, azimuth, (down, max(around, 2 * refined)))
     return mesh, ["top", "bottom", "left", "right"], 2.0 * radius
 
 

@@ -55,6 +55,18 @@ def file(tmp_path: Path) -> Path:
     return written
 
 
+def test_scales_of_an_older_step_are_in_its_ratios(file: Path) -> None:
+    with np.load(file) as arrays:
+        older = {name: arrays[name] for name in arrays.files if not name.endswith("_scale")}
+    np.savez(file, **older)
+    written, read = waypoint().step.balance, read_step(file)[0].step.balance
+    assert (read.force_imbalance, read.moment_imbalance) == (written.force_imbalance, written.moment_imbalance)
+    force = np.linalg.norm(written.reaction_force + written.load_force)
+    moment = np.linalg.norm(written.reaction_moment + written.load_moment + written.magnetic_torque)
+    assert read.force_scale * read.force_imbalance == pytest.approx(force)
+    assert read.moment_scale * read.moment_imbalance == pytest.approx(moment)
+
+
 @pytest.mark.parametrize("plain", [False, True])
 def test_every_bit_comes_back(file: Path, plain: bool) -> None:
     written = waypoint(plain=plain)

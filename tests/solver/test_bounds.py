@@ -18,7 +18,6 @@ from magshell.solver import critical, follower
 from magshell.solver.follower import Follower
 from magshell.solver.goals import LoadGoal
 from magshell.solver.newton import StepFailure, Trial
-from solver.arches import arch
 from solver.models import Record, strip
 
 
@@ -82,18 +81,6 @@ def test_a_trial_that_is_not_finite_ends(monkeypatch: pytest.MonkeyPatch) -> Non
     with pytest.raises(SolveError, match="after 1 cut the step"):
         solve(strip(field=(0, 0, 1e3)), Settings(), [record])
     assert len(record.cuts) == 1
-
-
-def test_a_path_that_comes_no_nearer_ends(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The arch goes back from its limit point; here it is not given the steps to come round."""
-    monkeypatch.setattr(follower, "MOST_STEPS", 6)
-    with pytest.raises(SolveError) as caught:
-        solve(arch())
-    path, reason = caught.value.path, caught.value.reason
-    assert "the last 6 steps came no nearer to the next stop, load factor " in reason, reason
-    factors = [step.load_factor for step in path.steps]
-    assert len(factors) - 1 - int(np.argmax(factors)) <= 7, factors
-    assert f"to and fro between {min(factors[-6:]):.4g} and" in reason, reason
 
 
 @pytest.mark.parametrize(("largest", "strays"), [(1.0, True), (5e-5, False)])
