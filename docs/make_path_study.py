@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import argparse
 
-from path_study import arch, energy, pump, strip, turning
+from path_study import arch, energy, pump, random_models, strip, turning
 from path_study.page import write
 from path_study.runs import Runs
 
@@ -21,6 +21,7 @@ PARTS = {
     "turning": turning.study,
     "energy": energy.study,
     "pump": pump.study,
+    "random": random_models.study,
 }
 
 

@@ -32,7 +32,7 @@ def waypoint(number: int = 7, plain: bool = False) -> Waypoint:
             random(size=(ELEMENTS, 4, 3)),
         )  # fmt: skip
 
-    balance = Balance(*(random(size=3) for _ in range(5)), 1e-12, 3e-13)
+    balance = Balance(*(random(size=3) for _ in range(5)), 1e-12, 3e-13, 2.0, 0.1)
     point = CriticalPoint(
         2, "limit point", 1, random(), random(size=3), random(), state(), random(size=(NODES, 10)), (0, None)
     )
@@ -53,6 +53,18 @@ def file(tmp_path: Path) -> Path:
     written = tmp_path / "step-0007.npz"
     written.write_bytes(content(waypoint(), ORIGIN))
     return written
+
+
+def test_scales_of_an_older_step_are_in_its_ratios(file: Path) -> None:
+    with np.load(file) as arrays:
+        older = {name: arrays[name] for name in arrays.files if not name.endswith("_scale")}
+    np.savez(file, **older)
+    written, read = waypoint().step.balance, read_step(file)[0].step.balance
+    assert (read.force_imbalance, read.moment_imbalance) == (written.force_imbalance, written.moment_imbalance)
+    force = np.linalg.norm(written.reaction_force + written.load_force)
+    moment = np.linalg.norm(written.reaction_moment + written.load_moment + written.magnetic_torque)
+    assert read.force_scale * read.force_imbalance == pytest.approx(force)
+    assert read.moment_scale * read.moment_imbalance == pytest.approx(moment)
 
 
 @pytest.mark.parametrize("plain", [False, True])

@@ -42,6 +42,14 @@ def test_the_loop_is_closed(loop: ms.Path) -> None:
     assert left < CLOSED, f"{left:.1e} of the largest displacement is left"
 
 
+def test_round_off_of_the_unloaded_end_is_no_imbalance(loop: ms.Path) -> None:
+    """There every force is round-off, and balances nothing; the path's largest forces say how little it is."""
+    summary = loop.summary
+    assert max(summary["force_imbalance"], summary["moment_imbalance"]) < 1e-8, summary
+    last = loop.steps[-1].balance
+    assert last.force_scale < 1e-9 * max(step.balance.force_scale for step in loop.steps[1:])
+
+
 def _pairs(path: ms.Path) -> Iterator[tuple[ms.Step, ms.Step]]:
     """Steps of different stages with the same field, on the same part of the path."""
     for number, one in enumerate(path.steps):

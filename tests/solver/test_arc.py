@@ -152,13 +152,16 @@ def test_probe_that_a_support_holds() -> None:
 
 @pytest.mark.parametrize("stage", [Stage(), BY_ARC], ids=["load", "arc-length"])
 def test_a_path_that_wanders_ends_with_a_reason(monkeypatch: pytest.MonkeyPatch, stage: Stage) -> None:
-    monkeypatch.setattr(follower, "WANDERING", 8)
+    monkeypatch.setattr(follower, "MOST_STEPS", 8)
     record = Record()
     with pytest.raises(
-        SolveError, match=r"load factor .*: 8 steps by arc length have not led to the next stop"
+        SolveError, match=r"load factor .*: the last 8 steps came no nearer to the next stop, load factor 1"
     ) as caught:
         solve(arch([stage]), observers=[record])
     path = caught.value.path
+    factors = loads(path)
+    assert factors[-8:].max() - factors[-9] < 0.01 < factors[-9] - factors[-10]
+    assert f"to and fro between {factors[-8:].min():.4g} and {factors[-8:].max():.4g}" in caught.value.reason
     assert path.steps == record.steps
     assert len(path.steps) > 8
     assert len(path.critical_points) == 1

@@ -223,9 +223,22 @@ def _state(arrays: Mapping[str, np.ndarray], prefix: str) -> State:
 def _balance(arrays: Mapping[str, np.ndarray]) -> Balance | None:
     if "balance_force_imbalance" not in arrays:
         return None
-    values = [arrays[f"balance_{name}"] for name in Balance._fields]
-    own: list[Any] = [value if value.ndim else float(value) for value in values]
-    return Balance(*own)
+    own: dict[str, Any] = {
+        name: value if value.ndim else float(value)
+        for name, value in ((name, arrays.get(f"balance_{name}")) for name in Balance._fields)
+        if value is not None
+    }
+    if "force_scale" not in own:  # a folder of version 0.1: the scale is in the ratio
+        force = own["reaction_force"] + own["load_force"]
+        moment = own["reaction_moment"] + own["load_moment"] + own["magnetic_torque"]
+        own["force_scale"] = _scale(force, own["force_imbalance"])
+        own["moment_scale"] = _scale(moment, own["moment_imbalance"])
+    return Balance(**own)
+
+
+def _scale(total: np.ndarray, imbalance: float) -> float:
+    """What a sum was divided by."""
+    return float(np.linalg.norm(total)) / imbalance if imbalance > 0.0 else 0.0
 
 
 def _critical(arrays: Mapping[str, np.ndarray], prefix: str) -> CriticalPoint:

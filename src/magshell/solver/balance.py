@@ -7,6 +7,7 @@ element kernels, from the point values of F and R̃.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -35,7 +36,9 @@ class Balance(NamedTuple):
     load_moment : ndarray, shape (3,)
         About the origin, N m.
     force_imbalance, moment_imbalance : float
-        |sum| over the sum of magnitudes of the nodal reactions and loads (and of the torque's density). Couples of the
+        |sum| over the scale.
+    force_scale, moment_scale : float
+        Sum of magnitudes of the nodal reactions and loads, N and N m (here with the torque's density). Couples of the
         loads count among the forces with the body's size as their arm: pure bending exerts no other.
     """
 
@@ -46,6 +49,22 @@ class Balance(NamedTuple):
     load_moment: FloatArray
     force_imbalance: float
     moment_imbalance: float
+    force_scale: float
+    moment_scale: float
+
+
+def largest_imbalances(balances: Sequence[Balance]) -> tuple[float, float]:
+    """Largest imbalance of forces and of moments on a path, over the largest scales of that path.
+
+    A state without load has forces of round-off only, which do not balance each other.
+    """
+    if not balances:
+        return 0.0, 0.0
+    ratios = np.array([(one.force_imbalance, one.moment_imbalance) for one in balances])
+    scales = np.array([(one.force_scale, one.moment_scale) for one in balances])
+    sums, largest = (ratios * scales).max(axis=0), scales.max(axis=0)
+    force, moment = np.divide(sums, largest, out=np.zeros(2), where=largest > 0.0).tolist()
+    return force, moment
 
 
 def magnetic_torque(discretisation: Discretisation, state: State, flux_density: FloatArray) -> tuple[FloatArray, float]:
@@ -99,6 +118,8 @@ def balance(discretisation: Discretisation, state: State, loading: Loading, resi
         load_moment_sum,
         _over(force_sum + load_sum, force_scale),
         _over(moment_sum + load_moment_sum + torque, moment_scale),
+        force_scale,
+        moment_scale,
     )
 
 

@@ -22,12 +22,14 @@ from magshell.assembly import Assembly
 from magshell.linalg import SingularMatrix
 from magshell.shell.state import State
 from magshell.solver.constraints import Metric, Sphere
-from magshell.solver.newton import Solution, System, Trial, newton
+from magshell.solver.newton import Solution, StepFailure, System, Trial, newton
 from magshell.solver.track import Point, point_at, trial_at
 
 LIMIT_POINT, BIFURCATION = "limit point", "bifurcation"
 # Of a step: accuracy of a limit point along it, and the distances from which a bifurcation is approached.
 ACCURACY, COARSE_CLEARANCE, CLEARANCE = 1e-6, 1e-2, 1e-4
+# Bifurcations that are looked for in one step; where there are more, it is made again, shorter.
+MOST_IN_A_STEP = 10
 
 Report = Callable[[Trial, int, str, float], None]
 
@@ -143,16 +145,23 @@ class _Search:
         """Distance at which a function of the point changes its sign."""
         from scipy.optimize import brentq
 
-        return float(brentq(lambda distance: function(self.point(distance)), low, high, xtol=ACCURACY * self.length))
+        ends = {low: self.seen(low), high: self.seen(high)}
+
+        def value(distance: float) -> float:
+            return function(ends[distance] if distance in ends else self.point(distance))
+
+        return float(brentq(value, low, high, xtol=ACCURACY * self.length, disp=False))
 
     def bifurcations(self, low: float, high: float) -> Iterator[Found]:
-        """Where the number of negative pivots changes between two distances."""
-        first, last = self.seen(low).negative_pivots, self.seen(high).negative_pivots
-        if first is None or last is None or first == last:
-            return
-        below, above, at = self.singular(low, high)
-        yield self.between(below, above, at)
-        yield from self.bifurcations(above, high)
+        """Where the number of negative pivots changes between two distances; raises StepFailure if that has no end."""
+        for _ in range(MOST_IN_A_STEP):
+            first, last = self.seen(low).negative_pivots, self.seen(high).negative_pivots
+            if first is None or last is None or first == last:
+                return
+            below, above, at = self.singular(low, high)
+            yield self.between(below, above, at)
+            low = above
+        raise StepFailure(f"more than {MOST_IN_A_STEP} bifurcations lie within one step")
 
     def singular(self, low: float, high: float) -> tuple[float, float, float]:
         """Two distances on either side of the first bifurcation, a clearance from it, and its own.

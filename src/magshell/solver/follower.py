@@ -4,25 +4,29 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from magshell.solver.balance import Balance, balance
 from magshell.solver.constraints import Constraint, Metric, Sphere
 from magshell.solver.critical import LIMIT_POINT, CriticalPoint, locate, passed
+from magshell.solver.diagnosis import diagnosis
 from magshell.solver.events import Iteration, Observer
 from magshell.solver.goals import Goal, LoadGoal, ProbeGoal, goals_of
 from magshell.solver.newton import Solution, StepFailure, System, Trial, newton
 from magshell.solver.path import Path, Step
 from magshell.solver.starts import Start, start_of
-from magshell.solver.track import Direction, Point, Slope, arc, crossing, point_at, trial_at
+from magshell.solver.track import Direction, Point, Slope, arc, crossing, known, point_at, trial_at
 from magshell.solver.waypoint import Waypoint
 
 GROWTH, CUT = 2.5, 0.35
 # Failures in a row after which the arc length is held instead.
 PATIENCE = 2
-# Steps that a path may take by arc length to its next goal.
-WANDERING = 1000
+# A step that failed is made again with at most this part of its length along the path.
+LEAST_CUT = 0.5
+# So many steps must come nearer to the next goal by this share of the way to it.
+MOST_STEPS, PROGRESS = 100, 0.01
 # Largest angle between a step and the direction of the path at either end: beyond it the path has been left.
 SHARPEST = np.pi / 3
 # Largest distance of a solution from its trial state, in lengths of the step: beyond it another path may have been met.
@@ -31,6 +35,26 @@ MISS = 0.2
 JUMP = 0.5
 # First step along the mode of a branch, in sizes of the body.
 BRANCH_STEP = 0.01
+
+
+class Attempt(NamedTuple):
+    """A step to be made.
+
+    Attributes
+    ----------
+    trial : Trial
+    constraint : Constraint or None
+        What is held besides the supports; None: the load factor.
+    at_goal : bool
+        Whether it leads to the goal.
+    distance : float
+        Along the path, as it is expected.
+    """
+
+    trial: Trial
+    constraint: Constraint | None
+    at_goal: bool
+    distance: float
 
 
 class Follower:
@@ -48,7 +72,7 @@ class Follower:
         self.metric = Metric(1.0 / (len(mesh.points) * mesh.size**2))
         self.stage, self.track = 0, list[Point]()
         self.goal, self.taken, self.by_arc, self.radius = 0, 0, False, 0.0
-        self.reason = ""
+        self.failure = StepFailure("")
         self.begin, self.cpu = time.perf_counter(), time.process_time() - path.cpu_seconds
 
     def run(self, stages: int) -> None:
@@ -118,72 +142,83 @@ class Follower:
         self.by_arc = self.system.course.stage.control == "arc-length"
 
     def _reach(self, goal: Goal) -> None:
-        """Steps until the goal is met."""
+        """Steps until the goal is met.
+
+        A step that fails is made again at most half as long, so that failures in a row have an end; `_stray` bounds the
+        steps that succeed.
+        """
         failures = 0
         while True:
-            last, (trial, constraint, at_goal) = self.track[-1], self._next(goal)
+            attempt = self._next(goal)
+            last, trial = self.track[-1], attempt.trial
             distance = self.metric.norm(trial.state.u - last.state.u, trial.load_factor - last.load_factor)
-            solved = self._solved(trial, constraint, goal, at_goal)
+            solved = self._solved(attempt, goal)
             if solved is not None:
                 point, solution, critical = solved
                 grown = distance * self._growth(solution.solves)
-                self.radius = max(self.radius, grown) if at_goal else grown
+                self.radius = max(self.radius, grown) if attempt.at_goal else grown
                 self.taken += 1
-                if at_goal:
+                if attempt.at_goal:
                     self._head_for(self.goal + 1)
                 self.track = [*self.track[-2:], point]
                 self._keep(point, solution, self._balance(solution), critical)
-                if at_goal:
+                if attempt.at_goal:
                     return
                 failures = 0
-                if self.by_arc and self.taken > WANDERING:
-                    raise StepFailure(
-                        f"{_position(self.path)}: {WANDERING} steps by arc length have not led to the next stop"
-                    )
+                self._stray(goal)
                 continue
             failures += 1
             self.by_arc |= failures == PATIENCE
-            self.radius = CUT * distance
-            if self.radius < self.settings.smallest_step:
-                break
-        raise StepFailure(_give_up(self.path, self.stage, trial.load_factor, self.reason))
+            self.radius = min(CUT * distance, LEAST_CUT * attempt.distance)
+            if not self.radius >= self.settings.smallest_step:
+                raise StepFailure(self._give_up(trial.load_factor))
 
-    def _next(self, goal: Goal) -> tuple[Trial, Constraint | None, bool]:
-        """The next trial state, what is held in its step, and whether the step leads to the goal."""
-        track, longest = self.track, self._longest() if isinstance(goal, LoadGoal) else self.radius
-        values = [goal.value(point) for point in track[-3:]]
-        at = crossing(track, values, goal.slope(track[-1].slope), goal.wanted, 2.0 * longest)
+    def _stray(self, goal: Goal) -> None:
+        """Raise StepFailure if the last steps came no nearer to the goal than the ones before."""
+        values = [goal.value(step) for step in self.path.steps[-self.taken :]]
+        if len(values) <= MOST_STEPS:
+            return
+        left = np.minimum.accumulate(np.abs(goal.wanted - np.array(values)))
+        least = min(PROGRESS, 10.0 * self.settings.largest_step) * left[0]
+        if left[-MOST_STEPS - 1] - left[-1] < least:
+            raise StepFailure(self._strayed(goal, values[-MOST_STEPS:]))
+
+    def _next(self, goal: Goal) -> Attempt:
+        """The next trial state, and what is held in its step."""
+        longest = self._longest() if isinstance(goal, LoadGoal) else self.radius
+        track = known(self.track, longest)
+        values, last = [goal.value(point) for point in track], track[-1]
+        at = crossing(track, values, goal.slope(last.slope), goal.wanted, 2.0 * longest)
         if at is not None and at <= 1.3 * longest:
             wanted = goal.wanted if isinstance(goal, LoadGoal) else None
-            return self._trial(at, wanted), goal.hold_wanted(), True
-        trial = self._trial(longest if at is None else 0.5 * at)
+            return Attempt(self._trial(at, wanted), goal.hold_wanted(), True, at)
+        distance = longest if at is None else 0.5 * at
+        trial = self._trial(distance)
         nearer = (goal.value(trial) - values[-1]) * (goal.wanted - values[-1]) > 0.0
         if nearer and not self.by_arc:
-            return trial, goal.hold(trial), False
-        chord: Direction = trial.state.u - track[-1].state.u, trial.load_factor - track[-1].load_factor
-        sphere = Sphere(self.metric, track[-1].state.u, track[-1].load_factor, *chord, self.metric.norm(*chord))
-        return trial, sphere, False
+            return Attempt(trial, goal.hold(trial), False, distance)
+        chord: Direction = trial.state.u - last.state.u, trial.load_factor - last.load_factor
+        sphere = Sphere(self.metric, last.state.u, last.load_factor, *chord, self.metric.norm(*chord))
+        return Attempt(trial, sphere, False, distance)
 
     def _trial(self, distance: float, load_factor: float | None = None) -> Trial:
-        return trial_at(self.discretisation, self.system.course, self.track, distance, load_factor)
+        return trial_at(self.discretisation, self.system.course, known(self.track, distance), distance, load_factor)
 
     def _longest(self) -> float:
         """The radius, or less where the load factor would change by more than the largest step."""
-        track, largest = self.track, self.settings.largest_step
-        loads = [point.load_factor for point in track[-3:]]
+        track, largest = known(self.track, self.radius), self.settings.largest_step
+        loads = [point.load_factor for point in track]
         limits = [
             crossing(track, loads, track[-1].slope.load, loads[-1] + change, self.radius)
             for change in (largest, -largest)
         ]
         return min((limit for limit in limits if limit is not None), default=self.radius)
 
-    def _solved(
-        self, trial: Trial, constraint: Constraint | None, goal: Goal, at_goal: bool
-    ) -> tuple[Point, Solution, list[CriticalPoint]] | None:
+    def _solved(self, attempt: Attempt, goal: Goal) -> tuple[Point, Solution, list[CriticalPoint]] | None:
         """What a step leads to, and the critical points passed; None, and the observers know why, if it failed."""
-        last = self.track[-1]
+        last, trial = self.track[-1], attempt.trial
         try:
-            solution = newton(self.system, trial, constraint, lambda *heard: self._report(trial, *heard))
+            solution = newton(self.system, trial, attempt.constraint, lambda *heard: self._report(trial, *heard))
             found = solution.trial
             chord: Direction = found.state.u - last.state.u, found.load_factor - last.load_factor
             point = point_at(self.system, self.metric, solution, 0.0, chord)
@@ -191,14 +226,14 @@ class Follower:
             point = point._replace(arc_length=last.arc_length + length)
             missed: Direction = found.state.u - trial.state.u, found.load_factor - trial.load_factor
             self._check(point, chord, length, self.metric.norm(*missed))
-            if not at_goal and (goal.wanted - goal.value(last)) * (goal.wanted - goal.value(point)) <= 0.0:
+            if not attempt.at_goal and (goal.wanted - goal.value(last)) * (goal.wanted - goal.value(point)) <= 0.0:
                 raise StepFailure("the step goes beyond a stop")
             return point, solution, self._located(last, point)
         except StepFailure as failure:
-            self.reason = str(failure)
+            self.failure = failure
             self.path.cuts += 1
             for observer in self.observers:
-                observer.cut(trial.load_factor, self.reason)
+                observer.cut(trial.load_factor, str(failure))
             return None
 
     def _check(self, point: Point, chord: Direction, length: float, missed: float) -> None:
@@ -268,22 +303,36 @@ class Follower:
         """Factor of the step size after the solves that the last step took."""
         return float(np.clip(self.settings.target_iterations / max(solves, 1), 0.4, GROWTH))
 
+    def _give_up(self, load_factor: float) -> str:
+        """Where the path ends, what fails there, and why."""
+        path, cuts = self.path, self.path.cuts
+        turns = [point for point in path.critical_points if point.kind == LIMIT_POINT and point.stage == self.stage]
+        turned = (
+            f" The load factor turned at {turns[-1].load_factor:.6g} (critical point {turns[-1].number})."
+            if turns
+            else ""
+        )
+        return (
+            f"{self._position()}: after {cuts} cut{'s' * (cuts != 1)} the step to {load_factor:.6g} still fails: "
+            f"{self.failure}.{turned} {self._diagnosis(self.failure.inverted)}"
+        )
 
-def _position(path: Path) -> str:
-    last = path.steps[-1]
-    magnitude = float(np.linalg.norm(last.flux_density))
-    field = f" ({1e3 * magnitude:.4g} mT)" if magnitude > 0.0 else ""
-    where = f" of stage {last.stage + 1}" if len(path.model.stages) > 1 else ""
-    return f"stopped at load factor {last.load_factor:.6g}{where}{field}"
+    def _strayed(self, goal: Goal, values: Sequence[float]) -> str:
+        """The same of a path that goes on without coming nearer to a goal."""
+        turns = int(np.count_nonzero(np.diff(np.sign(np.diff(values)))))
+        return (
+            f"{self._position()}: the last {MOST_STEPS} steps came no nearer to the next stop, {goal.named}; "
+            f"it went to and fro between {min(values):.4g} and {max(values):.4g} and turned {turns} times. "
+            f"{self._diagnosis(None)}"
+        )
 
+    def _position(self) -> str:
+        last = self.path.steps[-1]
+        magnitude = float(np.linalg.norm(last.flux_density))
+        field = f" ({1e3 * magnitude:.4g} mT)" if magnitude > 0.0 else ""
+        where = f" of stage {last.stage + 1}" if len(self.path.model.stages) > 1 else ""
+        return f"stopped at load factor {last.load_factor:.6g}{where}{field}"
 
-def _give_up(path: Path, stage: int, load_factor: float, reason: str) -> str:
-    turns = [point for point in path.critical_points if point.kind == LIMIT_POINT and point.stage == stage]
-    turned = (
-        f" The load factor turned at {turns[-1].load_factor:.6g} (critical point {turns[-1].number})." if turns else ""
-    )
-    return (
-        f"{_position(path)}: after {path.cuts} cut{'s' * (path.cuts != 1)} "
-        f"the step to {load_factor:.6g} still fails: {reason}.{turned} Likely causes: a mesh too coarse for the local "
-        "bending, a path that bends too sharply, or a unit slip; `magshell check` shows the magnitudes"
-    )
+    def _diagnosis(self, inverted: int | None) -> str:
+        last = self.path.steps[-1]
+        return diagnosis(self.discretisation, last.state, self.path.loading(last), inverted)

@@ -9,6 +9,7 @@ from magshell.loading import Course
 from magshell.model import Model
 from magshell.solver.constraints import Constraint, ProbeValue
 from magshell.solver.newton import Trial
+from magshell.solver.path import Step
 from magshell.solver.track import Point, Slope
 
 
@@ -19,7 +20,11 @@ class Goal(Protocol):
     def wanted(self) -> float:
         """That value."""
 
-    def value(self, point: Point | Trial) -> float:
+    @property
+    def named(self) -> str:
+        """The goal in words."""
+
+    def value(self, point: Point | Trial | Step) -> float:
         """Of the quantity."""
 
     def slope(self, slope: Slope) -> float:
@@ -37,7 +42,12 @@ class LoadGoal(NamedTuple):
 
     wanted: float
 
-    def value(self, point: Point | Trial) -> float:
+    @property
+    def named(self) -> str:
+        """The goal in words."""
+        return f"load factor {self.wanted:.6g}"
+
+    def value(self, point: Point | Trial | Step) -> float:
         """The load factor."""
         return point.load_factor
 
@@ -61,7 +71,12 @@ class ProbeGoal(NamedTuple):
     column: int
     wanted: float
 
-    def value(self, point: Point | Trial) -> float:
+    @property
+    def named(self) -> str:
+        """The goal in words."""
+        return f"u{self.column + 1} = {1e3 * self.wanted:.6g} mm of node {self.node}"
+
+    def value(self, point: Point | Trial | Step) -> float:
         """The displacement."""
         return float(point.state.u[self.node, self.column])
 

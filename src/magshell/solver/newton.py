@@ -30,7 +30,11 @@ ABSURD = 1e8
 
 
 class StepFailure(ArithmeticError):
-    """The iteration did not converge; the message says why."""
+    """The iteration did not converge; the message says why, `inverted` which element it turned inside out."""
+
+    def __init__(self, message: str, inverted: int | None = None) -> None:
+        super().__init__(message)
+        self.inverted = inverted
 
 
 class Trial(NamedTuple):
@@ -108,7 +112,7 @@ def newton(
     try:
         assembly = system.assemble(trial)
     except InvertedElement as inverted:
-        raise StepFailure(_inverted(inverted)) from None
+        raise _inverted(inverted) from None
     while True:
         kind, residual = assembly.worst
         residuals.append(residual)
@@ -149,7 +153,7 @@ def newton(
                 break
             except InvertedElement as inverted:
                 if halving == HALVINGS:
-                    raise StepFailure(_inverted(inverted)) from None
+                    raise _inverted(inverted) from None
 
 
 def _stalled(residuals: list[float]) -> bool:
@@ -173,8 +177,11 @@ def factorise(system: System, assembly: Assembly) -> None:
         raise StepFailure(_free_direction(system.discretisation, direction)) from None
 
 
-def _inverted(inverted: InvertedElement) -> str:
-    return f"element {inverted.element} is turned inside out (det F = {inverted.determinant:.2g})"
+def _inverted(inverted: InvertedElement) -> StepFailure:
+    element, determinant = inverted.element, inverted.determinant
+    if determinant == 0.0:
+        return StepFailure(f"the inner unknowns of element {element} cannot be eliminated")
+    return StepFailure(f"element {element} is turned inside out (det F = {determinant:.2g})", element)
 
 
 def _size(discretisation: Discretisation, increment: FloatArray) -> FloatArray:

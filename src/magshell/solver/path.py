@@ -14,7 +14,7 @@ from magshell.errors import InputError, suggest
 from magshell.loading import Course, Loading
 from magshell.model import Model
 from magshell.shell.state import State
-from magshell.solver.balance import Balance
+from magshell.solver.balance import Balance, largest_imbalances
 from magshell.solver.critical import CriticalPoint
 from magshell.solver.settings import Settings
 
@@ -179,7 +179,7 @@ class Path:
     def summary(self) -> dict[str, Any]:
         """What summary.json holds."""
         last = self.steps[-1] if self.steps else None
-        balances = [step.balance for step in self.steps if step.balance is not None]
+        force, moment = largest_imbalances([step.balance for step in self.steps if step.balance is not None])
         return {
             "converged": self.converged,
             "reason": self.reason,
@@ -202,8 +202,8 @@ class Path:
                 }
                 for point in self.critical_points
             ],
-            "force_imbalance": max((b.force_imbalance for b in balances), default=0.0),
-            "moment_imbalance": max((b.moment_imbalance for b in balances), default=0.0),
+            "force_imbalance": force,
+            "moment_imbalance": moment,
             "probes": {name: self.probe(name).u[-1].tolist() for name in self.model.probe_nodes} if last else {},
         }
 

@@ -22,6 +22,9 @@ from magshell.solver.newton import Solution, StepFailure, System, Trial, factori
 
 # Part of a step by which the tangent of its end may be that of a state before.
 CLOSE = 1e-2
+# A point closer behind than this part of a step says nothing of where the step leads: the round-off of its difference
+# from the last point is enlarged by the square of that ratio.
+REACH = 100.0
 
 Direction: TypeAlias = tuple[FloatArray, float]
 
@@ -64,6 +67,12 @@ class Point(NamedTuple):
     slope: Slope
     stresses: Stresses
     negative_pivots: int | None
+
+
+def known(track: Sequence[Point], distance: float) -> list[Point]:
+    """The points that tell where the path is this far ahead of the last: that one, and those not too close behind."""
+    last = track[-1]
+    return [*(one for one in track[-3:-1] if last.arc_length - one.arc_length >= distance / REACH), last]
 
 
 def _weights(track: Sequence[Point], distance: float) -> tuple[float, list[float]]:

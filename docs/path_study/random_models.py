@@ -1,0 +1,265 @@
+"""Random models: shells, materials, remanences and loads as nobody chose them, and how their paths end.
+
+Each is made from its number alone: always the same. Thickness ratios go from 5 to 1000 and loads up to several rolls,
+on meshes that nobody checked for them; a part of the paths cannot be followed to the end, and has to say why.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+import magshell as ms
+from magshell.mesh import Mesh
+from path_study.page import Findings, number, table
+from path_study.runs import Runs
+
+SEED, COUNT = 2026, 160
+LIMIT = 60.0
+"""CPU seconds that a path may take, without the compilation of its kernels."""
+COARSE, CHECKED, REFINED = "mesh too coarse for the bending", 6, 2
+"""A cause that is put to the test: so many of its models again, with so many times the elements in both directions."""
+
+MU0 = 4e-7 * math.pi
+CAUSES = {
+    "couple at the limit of the micro-rotation": "reaches the limit of what the micro-rotation",
+    COARSE: "the mesh is too coarse for the bending",
+    "material squashed": "the material is squashed",
+    "element at a support turned inside out": "which is turned inside out, touches",
+    "to and fro, nothing else": "came no nearer to the next stop",
+}
+"""What the statistics call a cause, and the words of the message; the first that applies counts."""
+UNKNOWN, ENDED, UNFINISHED = "nothing stands out", "end of the path", f"not ended in {LIMIT:g} CPU s"
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A random model, and what was drawn for it in words."""
+
+    words: str
+    model: ms.Model
+
+
+def draw(which: int, refined: int = 1) -> Drawn:
+    """The random model of a number; `refined` times as many elements in both directions."""
+    rng = np.random.default_rng([SEED, which])
+    name, make = SHAPES[rng.integers(len(SHAPES))]
+    mesh, groups, size = make(rng, refined)
+    ratio = float(np.exp(rng.uniform(math.log(5.0), math.log(1000.0))))
+    thickness = size / ratio
+    mu = 1e3 * float(np.exp(rng.uniform(math.log(50.0), math.log(800.0))))
+    lam = mu * float(np.exp(rng.uniform(math.log(0.5), math.log(40.0))))
+    law, coupling = PAIRS[rng.choice(len(PAIRS), p=SHARES)]
+    material = law(mu, lam, mu / 10.0, thickness / 10.0)
+    magnitude = 1e-3 * float(rng.uniform(20.0, 150.0))
+    kind, remanence = _remanence(rng, magnitude, size)
+    beta = float(np.exp(rng.uniform(0.0, math.log(2000.0))))
+    young = mu * (3.0 * lam + 2.0 * mu) / (lam + mu)
+    direction = _unit(rng)
+    field = beta * MU0 * young / (12.0 * magnitude * ratio**2) * direction
+    loading = str(rng.choice(["load", "updown", "rotate"]))
+    stages = [ms.Stage()] if loading == "load" else [ms.Stage(), ms.Stage(control="arc-length")]
+    turning: dict[str, Any] = {"history": [1.0] * len(stages)}
+    if loading == "updown":
+        turning = {"history": [1.0, 0.0]}
+    elif loading == "rotate":
+        turning |= {"rotation_axis": _unit(rng), "rotation": [0.0, math.pi]}
+    held = list(rng.permutation(groups))
+    supports: list[Any] = [ms.Clamp(str(held[0]))]
+    if len(held) > 1 and rng.random() < 0.2:
+        supports.append((ms.Clamp if rng.random() < 0.5 else ms.SimpleSupport)(str(held[1])))
+    model = ms.Model(
+        ms.Shell(mesh, thickness, material, remanence), supports, ms.UniformField(field, **turning), coupling(),
+        stages=stages,
+    )  # fmt: skip
+    words = (
+        f"{name}, L/h {ratio:.0f}, load {beta:.0f}, {kind} remanence, {loading}, {law.__name__}, {coupling.__name__}"
+    )
+    return Drawn(words, model)
+
+
+Shape = tuple[Mesh, list[str], float]
+"""A mesh, its edge groups, and a length that says how large it is, m."""
+
+
+def _unit(rng: np.random.Generator) -> np.ndarray:
+    vector = rng.normal(size=3)
+    return vector / np.linalg.norm(vector)
+
+
+def _counts(rng: np.random.Generator, refined: int) -> tuple[int, int]:
+    """Elements in both directions: from few to 32 in all."""
+    first = int(rng.integers(3, 13))
+    return refined * first, refined * int(rng.integers(1, 32 // first + 1))
+
+
+def _rectangle(rng: np.random.Generator, refined: int) -> Shape:
+    length = 1e-3 * rng.uniform(5.0, 25.0)
+    mesh = ms.mesh.rectangle(length, length * rng.uniform(0.15, 1.0), _counts(rng, refined))
+    return mesh, ["left", "right", "bottom", "top"], length
+
+
+def _annulus(rng: np.random.Generator, refined: int) -> Shape:
+    outer = 1e-3 * rng.uniform(5.0, 25.0)
+    around, across = _counts(rng, refined)
+    counts = (max(across // 2, 1), max(around, 8 * refined))
+    return ms.mesh.annulus(outer * rng.uniform(0.3, 0.7), outer, counts), ["inner", "outer"], 2.0 * outer
+
+
+def _cylinder(rng: np.random.Generator, refined: int) -> Shape:
+    radius = 1e-3 * rng.uniform(4.0, 12.0)
+    around, along = _counts(rng, refined)
+    mesh = ms.mesh.cylinder(radius, radius * rng.uniform(0.5, 3.0), (max(around, 8 * refined), along))
+    return mesh, ["start", "end"], 2.0 * radius
+
+
+def _sphere(rng: np.random.Generator, refined: int) -> Shape:
+    polar, azimuth = (rng.uniform(30.0, 50.0), rng.uniform(75.0, 150.0)), (0.0, rng.uniform(60.0, 230.0))
+    radius = 1e-3 * rng.uniform(6.0, 13.0)
+    down, around = _counts(rng, refined)
+    mesh = ms.mesh.sphere_patch(radius, polar, azimuth, (down, max(around, 2 * refined)))
+    return mesh, ["top", "bottom", "left", "right"], 2.0 * radius
+
+
+SHAPES: Sequence[tuple[str, Callable[[np.random.Generator, int], Shape]]] = [
+    ("rectangle", _rectangle),
+    ("annulus", _annulus),
+    ("cylinder", _cylinder),
+    ("sphere patch", _sphere),
+]
+PAIRS: Sequence[tuple[type, type]] = [
+    (ms.MicropolarNeoHookean, ms.MicropolarCouple),
+    (ms.MicropolarNeoHookean, ms.MicroRotationEnergy),
+    (ms.MicropolarNeoHookean, ms.DeformationGradientEnergy),
+    (ms.MicropolarMooneyRivlin, ms.MicropolarCouple),
+    (ms.MicropolarStVenantKirchhoff, ms.MicropolarCouple),
+]
+SHARES = (0.4, 0.15, 0.15, 0.15, 0.15)
+
+
+def _remanence(rng: np.random.Generator, magnitude: float, size: float) -> tuple[str, Any]:
+    """Constant, radial, a smooth function of the position, or a table of places."""
+    kind = str(rng.choice(["constant", "radial", "smooth", "tabulated"]))
+    if kind == "constant":
+        return kind, ms.remanence.constant(magnitude * _unit(rng))
+    if kind == "radial":
+        return kind, ms.remanence.radial(magnitude, through=(0.37 * size, 0.21 * size, -size))
+    waves, phases = rng.normal(size=(3, 3)) * 2.0 / size, rng.uniform(0.0, 2.0 * math.pi, 3)
+
+    def smooth(points: np.ndarray) -> np.ndarray:
+        values = np.sin(points @ waves.T + phases)
+        return magnitude * values / math.sqrt(3.0)
+
+    if kind == "smooth":
+        return kind, ms.remanence.function(smooth)
+    grid = np.linspace(-1.6, 1.6, 9) * size
+    places = np.stack(np.meshgrid(grid, grid, grid), axis=-1).reshape(-1, 3)
+    return kind, ms.remanence.at_places(places, smooth(places), tolerance=size)
+
+
+@dataclass(frozen=True)
+class Ending:
+    """How the path of a random model ends.
+
+    Attributes
+    ----------
+    words : str
+        The model.
+    ending : str
+        `ENDED`, `UNFINISHED`, a cause or `UNKNOWN`.
+    reason : str
+        The message; "" at the end of the path.
+    reached : float
+        Load factors of all stages together, over their number.
+    steps, solves, cuts : int
+    cpu : float
+        s, without compilation.
+    """
+
+    words: str
+    ending: str
+    reason: str
+    reached: float
+    steps: int
+    solves: int
+    cuts: int
+    cpu: float
+
+
+class OutOfTime(Exception):
+    """The limit is passed."""
+
+
+class Clock(ms.Observer):
+    """CPU time since the undeformed state, which all kernels have been compiled for."""
+
+    def __init__(self, limit: float) -> None:
+        self.limit, self.begin = limit, np.inf
+
+    def converged(self, step: ms.Step) -> None:
+        if not step.number:
+            self.begin = time.process_time()
+
+    def iterated(self, iteration: Any) -> None:
+        if self.seconds > self.limit:
+            raise OutOfTime
+
+    def finished(self, path: ms.Path) -> None:
+        self.path = path
+
+    @property
+    def seconds(self) -> float:
+        return max(time.process_time() - self.begin, 0.0)
+
+
+def ending_of(which: int, refined: int = 1, limit: float = LIMIT) -> Ending:
+    """Follow the path of a random model."""
+    drawn, clock, reason = draw(which, refined), Clock(limit), ""
+    try:
+        ms.solve(drawn.model, observers=[clock])
+        ending = ENDED
+    except ms.SolveError as failure:
+        reason = failure.reason
+        ending = next((cause for cause, said in CAUSES.items() if said in reason), UNKNOWN)
+    except OutOfTime:
+        ending = UNFINISHED
+    path, last = clock.path, clock.path.steps[-1]
+    reached = (last.stage + max(last.load_factor, 0.0)) / len(drawn.model.stages)
+    return Ending(drawn.words, ending, reason, reached, len(path.steps) - 1, path.solves, path.cuts, clock.seconds)
+
+
+def study(runs: Runs) -> Findings:
+    """How the paths end, and whether finer meshes help those that want one."""
+    endings = {which: _kept(runs, which) for which in range(COUNT)}
+    rows = []
+    for ending in (ENDED, *CAUSES, UNKNOWN, UNFINISHED):
+        some = [one for one in endings.values() if one.ending == ending]
+        cpu, solves = ([getattr(one, name) for one in some] or [math.nan] for name in ("cpu", "solves"))
+        figures = (float(np.median(cpu)), max(cpu), float(np.median(solves)), max(solves))
+        rows.append([ending, str(len(some)), *(number(figure, 2) for figure in figures)])
+    head = ["Path ends with", "Models", "CPU s, median", "longest", "Linear solves, median", "most"]
+    coarse = [which for which, one in endings.items() if one.ending == COARSE][:CHECKED]
+    finer = {which: _kept(runs, which, REFINED) for which in coarse}
+    ended = sum(one.ending == ENDED for one in finer.values())
+    further = sum(one.ending == ENDED or one.reached > endings[which].reached for which, one in finer.items())
+    words = (
+        f"The first {len(coarse)} models whose mesh is said to be too coarse, with {REFINED} times as many elements in "
+        f"both directions: {further} get further, {ended} of them to the end."
+    )
+    return Findings({"random": table(head, rows), "random-refined": words})
+
+
+def _kept(runs: Runs, which: int, refined: int = 1) -> Ending:
+    name = f"random {which}" + f", {refined} times as fine" * (refined > 1)
+
+    def solved() -> dict[str, Any]:
+        ending = ending_of(which, refined)
+        print(f"  {name}: {ending.words}: {ending.ending}, {ending.solves} solves, {ending.cpu:.1f} s", flush=True)
+        return asdict(ending)
+
+    return Ending(**runs.store.get(name, solved))

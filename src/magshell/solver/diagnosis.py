@@ -1,0 +1,209 @@
+r"""Why a path ends: what is measured in its last converged state, and in the step that failed.
+
+Three things end a path other than the physics of the body:
+
+* *Mesh too coarse for the bending.* An edge of an element is a parabola. The angle between its two end tangents, or
+  between the directors at its ends if that is larger (twist), is what the shell turns within one element. Uniform
+  bending by 45° in each element costs 0.3 % of the tip's displacement, by 60° 0.8 %, by 90° 3 %; where bending gathers
+  in a layer that is thinner than an element, as at a clamp, a path ends earlier.
+* *Couple at its limit.* The field's couple reaches the material through the micro-rotation alone. With F = Q S and the
+  micro-rotation turned by θ about n relative to Q, the energy -η/2 tr(U²) resists with (η/2) (tr S - n·S n)² sin 2θ per
+  unit volume: nothing more than that with sin 2θ = 1, 2η where nothing is stretched, can be transferred, and beyond 45°
+  there is no stable equilibrium.
+* *An element turned inside out*, where det F is far from one at its points already.
+
+Only what stands out is named as a cause; where nothing does, the figures are told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from magshell.arrays import FloatArray
+from magshell.assembly import Discretisation
+from magshell.loading import Loading
+from magshell.magnetics import law
+from magshell.shell.evaluation import evaluate
+from magshell.shell.state import State
+
+# Angle (degrees) turned within an element: what is safe, and beyond which the mesh is a likely cause.
+SAFE = 30.0
+# Part of the greatest couple, and angle between micro-rotation and material (degrees), at which the limit is near.
+NEAR_LIMIT, RUNNING_AHEAD = 0.9, 35.0
+# det F in the last state below which an element is about to turn inside out.
+SQUASHED = 0.5
+
+
+class Turn(NamedTuple):
+    """The largest angle (degrees) that the shell turns along an edge of an element, from one node to another."""
+
+    angle: float
+    element: int
+    nodes: tuple[int, int]
+
+
+class Couple(NamedTuple):
+    """The field's couple over the greatest that the micro-rotation transfers, where that is largest.
+
+    Attributes
+    ----------
+    ratio : float
+    ahead : float
+        Largest angle between micro-rotation and material, degrees.
+    element : int
+        Where the ratio is largest.
+    """
+
+    ratio: float
+    ahead: float
+    element: int
+
+
+class Squash(NamedTuple):
+    """The least det F at a point, and its element."""
+
+    determinant: float
+    element: int
+
+
+class Measures(NamedTuple):
+    """What is measured in a state."""
+
+    turn: Turn
+    squash: Squash
+    couple: Couple | None
+
+
+def measure(discretisation: Discretisation, state: State, loading: Loading) -> Measures:
+    """Bending per element, det F and the couple in a state."""
+    F = evaluate(discretisation.body, state).F
+    determinants = np.linalg.det(F).min(axis=(1, 2))
+    worst = int(determinants.argmin())
+    return Measures(
+        _turn(discretisation, state), Squash(float(determinants[worst]), worst), _couple(discretisation, state, loading)
+    )
+
+
+def diagnosis(discretisation: Discretisation, state: State, loading: Loading, inverted: int | None) -> str:
+    """Sentences for the end of a message: the causes that the last state shows, and what to do.
+
+    Parameters
+    ----------
+    discretisation : Discretisation
+    state : State
+        The last that converged.
+    loading : Loading
+        What acts there.
+    inverted : int or None
+        The element that the failed step turns inside out.
+    """
+    measured = measure(discretisation, state, loading)
+    causes = [*_causes(discretisation, measured)]
+    where = ""
+    if inverted is not None and (groups := _touched(discretisation, inverted)):
+        where = f" Element {inverted}, which is turned inside out, touches the support '{groups[0]}'."
+    if causes:
+        return "Likely cause: " + " Also, ".join(causes) + where
+    return (
+        f"In the last state nothing stands out: {_figures(measured)}.{where} The path may bend too sharply there (a "
+        "smaller largest_step shows it), or a unit may have slipped (`magshell check` shows the magnitudes)."
+    )
+
+
+def _causes(discretisation: Discretisation, measured: Measures) -> Iterator[str]:
+    turn, squash, couple = measured
+    coupling = discretisation.model.shell.material.coupling_modulus
+    if couple is not None and (couple.ratio > NEAR_LIMIT or couple.ahead > RUNNING_AHEAD):
+        yield (
+            f"the couple of the field reaches the limit of what the micro-rotation transfers to the material: it is "
+            f"{100 * couple.ratio:.0f} % of that in {_place(discretisation, couple.element)}, and the micro-rotation "
+            f"runs ahead by up to {couple.ahead:.0f}° (beyond 45° nothing holds it). Take a larger coupling_modulus "
+            f"than {coupling / 1e3:.4g} kPa, or a weaker field."
+        )
+    if turn.angle > SAFE:
+        one, other = turn.nodes
+        yield (
+            f"the mesh is too coarse for the bending: {_place(discretisation, turn.element)} turns by "
+            f"{turn.angle:.0f}° from node {one} to node {other}, where {SAFE:.0f}° are safe. Take "
+            f"{np.ceil(2.0 * turn.angle / SAFE) / 2.0:g} times as many elements, or more, in that direction."
+        )
+    if squash.determinant < SQUASHED:
+        yield (
+            f"the material is squashed: det F is {squash.determinant:.2g} in {_place(discretisation, squash.element)}."
+        )
+
+
+def _figures(measured: Measures) -> str:
+    turn, squash, couple = measured
+    figures = f"elements turn by at most {turn.angle:.0f}°, det F is at least {squash.determinant:.2g}"
+    if couple is None:
+        return figures
+    return f"{figures}, the couple is at most {100 * couple.ratio:.0f} % of what the micro-rotation transfers"
+
+
+def _turn(discretisation: Discretisation, state: State) -> Turn:
+    elements = discretisation.mesh.elements
+    position = discretisation.mesh.points + state.u
+    first, second = elements[:, :4], np.roll(elements[:, :4], -1, axis=1)
+    a, b, middle = position[first], position[second], position[elements[:, 4:]]
+    start, end = 4.0 * middle - 3.0 * a - b, 3.0 * b + a - 4.0 * middle
+    directors = discretisation.normals + state.w
+    angles = np.maximum(_angles(start, end), _angles(directors[first], directors[second]))
+    element, edge = (int(index) for index in np.unravel_index(angles.argmax(), angles.shape))
+    return Turn(float(angles[element, edge]), element, (int(first[element, edge]), int(second[element, edge])))
+
+
+def _angles(one: FloatArray, other: FloatArray) -> FloatArray:
+    """Between vectors (…, 3), degrees."""
+    sine = np.linalg.norm(np.cross(one, other), axis=-1)
+    return np.asarray(np.degrees(np.arctan2(sine, np.sum(one * other, axis=-1))))
+
+
+def _couple(discretisation: Discretisation, state: State, loading: Loading) -> Couple | None:
+    """None without a micro-rotation or a field."""
+    model, body = discretisation.model, discretisation.body
+    modulus = model.shell.material.coupling_modulus
+    if not body.layout.q or not modulus or not np.any(loading.flux_density):
+        return None
+    fields = evaluate(body, state)
+    F = fields.F.mean(axis=2)
+    left, stretches, right = np.linalg.svd(F)
+    Q = left @ right
+    S = np.einsum("epyx,epy,epyz->epxz", right, stretches, right)
+    c = np.linalg.norm(couple := _couples(discretisation, F, fields.R, loading.flux_density), axis=-1)
+    axis = np.einsum("epyx,epy->epx", Q, couple) / np.maximum(c, np.finfo(float).tiny)[..., None]
+    across = stretches.sum(axis=-1) - np.einsum("epx,epxy,epy->ep", axis, S, axis)
+    ratios = (c / (0.5 * modulus * across**2)).max(axis=1)
+    cosine = 0.5 * (np.einsum("epxy,epxy->ep", Q, fields.R) - 1.0)
+    element = int(ratios.argmax())
+    return Couple(float(ratios[element]), float(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))).max()), element)
+
+
+def _couples(discretisation: Discretisation, F: FloatArray, R: FloatArray, flux_density: FloatArray) -> FloatArray:
+    """Couple of the field per unit volume (elements, points, 3) that the law puts on the micro-rotation, N/m²."""
+    remanence = discretisation.body.remanence
+    m, n = (np.einsum("epxy,epy->xep", by, remanence) for by in (F, R))
+    f, c = np.zeros(m.shape), np.zeros(m.shape)
+    unused = np.zeros((3, *m.shape)), np.zeros((3, *m.shape))
+    law.forces_and_tangent(discretisation.model.coupling, m, n, flux_density, f, c, *unused)
+    return np.moveaxis(-c, 0, -1)
+
+
+def _place(discretisation: Discretisation, element: int) -> str:
+    """An element by number, position and the supports that it touches."""
+    mesh = discretisation.mesh
+    centre = mesh.points[mesh.elements[element, :4]].mean(axis=0)
+    position = ", ".join(f"{1e3 * x:.3g}" for x in centre)
+    groups = _touched(discretisation, element)
+    beside = f", at support '{groups[0]}'" if groups else ""
+    return f"element {element} (at ({position}) mm{beside})"
+
+
+def _touched(discretisation: Discretisation, element: int) -> list[str]:
+    """Groups of the supports that an element has nodes of."""
+    mesh = discretisation.mesh
+    groups = [support.group for support in discretisation.model.supports]
+    return [group for group in groups if np.isin(mesh.elements[element], mesh.nodes_of(group)).any()]

@@ -1,0 +1,123 @@
+"""What is measured where a path ends, against closed forms; and that it names the cause."""
+
+from __future__ import annotations
+
+import math
+import pathlib
+
+import numpy as np
+import pytest
+
+import magshell as ms
+from magshell import SolveError, problem, solve
+from magshell.assembly import Discretisation
+from magshell.linalg import nested_dissection
+from magshell.shell.state import State
+from magshell.solver.diagnosis import diagnosis, measure
+from solver.models import LENGTH, THICKNESS, rubber, strip
+
+CASES = pathlib.Path(__file__).parent / "cases"
+MU0 = 4e-7 * math.pi
+
+
+def discretised(model: ms.Model) -> Discretisation:
+    return Discretisation(model, nested_dissection)
+
+
+def rolled(discretisation: Discretisation, angle: float) -> State:
+    """The strip on a circle, by an angle in all; directors and micro-rotations turn with it."""
+    points, state = discretisation.mesh.points, discretisation.undeformed()
+    turned = angle * points[:, 0] / LENGTH
+    radius = LENGTH / angle
+    u = np.stack([radius * np.sin(turned), points[:, 1], radius * (1.0 - np.cos(turned))], axis=1) - points
+    w = np.stack([-np.sin(turned), 0.0 * turned, np.cos(turned) - 1.0], axis=1)
+    q = np.stack([np.cos(turned / 2), 0.0 * turned, -np.sin(turned / 2), 0.0 * turned], axis=1)
+    return state._replace(u=u, w=w, q=q)
+
+
+@pytest.mark.parametrize("degrees", [15.0, 60.0, 120.0])
+def test_angle_turned_within_an_element(degrees: float) -> None:
+    """A parabola with the chord and the rise of an arc is twice as steep at its ends as rise over half the chord."""
+    discretisation = discretised(strip((4, 1)))
+    state = rolled(discretisation, math.radians(4.0 * degrees))
+    turn = measure(discretisation, state, discretisation.model.loading(0.0)).turn
+    half = math.radians(degrees) / 2.0
+    expected = 2.0 * math.degrees(math.atan(2.0 * (1.0 - math.cos(half)) / math.sin(half)))
+    assert turn.angle == pytest.approx(max(expected, degrees), rel=1e-9)
+    straight = measure(discretisation, state._replace(w=0.0 * state.w), discretisation.model.loading(0.0)).turn
+    assert straight.angle == pytest.approx(expected, rel=1e-9)
+
+
+def test_couple_over_what_the_micro_rotation_transfers() -> None:
+    """Unstretched, the limit is 2η; stretched by s in both directions normal to the couple's axis, 2η s²."""
+    model = strip(field=(0, 0, 0.1), remanence=(0.143, 0, 0))
+    discretisation, eta = discretised(model), model.shell.material.coupling_modulus
+    loading, state = model.loading(1.0), discretised(model).undeformed()
+    ratio = 0.143 * 0.1 / MU0 / (2.0 * eta)
+    plain = measure(discretisation, state, loading).couple
+    assert plain.ratio == pytest.approx(ratio, rel=1e-9)
+    assert plain.ahead == pytest.approx(0.0, abs=1e-6)
+    s = 1.2
+    points = discretisation.mesh.points
+    stretched = state._replace(u=(s - 1.0) * points, w=(s - 1.0) * discretisation.normals)
+    # F B̃ grows by s, the limit by s².
+    assert measure(discretisation, stretched, loading).couple.ratio == pytest.approx(ratio / s, rel=1e-9)
+    q = np.zeros_like(state.q)
+    q[:, 0], q[:, 2] = math.cos(math.radians(10.0)), math.sin(math.radians(10.0))
+    assert measure(discretisation, state._replace(q=q), loading).couple.ahead == pytest.approx(20.0, rel=1e-9)
+
+
+def test_least_determinant() -> None:
+    discretisation = discretised(strip((4, 1)))
+    state = discretisation.undeformed()
+    u = np.zeros_like(state.u)
+    last = discretisation.mesh.points[:, 0] > 0.75 * LENGTH
+    u[last, 0] = -0.6 * (discretisation.mesh.points[last, 0] - 0.75 * LENGTH)
+    squash = measure(discretisation, state._replace(u=u), discretisation.model.loading(0.0)).squash
+    assert squash.element == 3
+    assert squash.determinant == pytest.approx(0.4, rel=1e-9)
+
+
+def test_path_ends_at_the_limit_of_the_couple() -> None:
+    """With the material held, 2η sin 2θ = B̃ B/μ0 has a solution up to B̃ B/μ0 = 2η, at 45°."""
+    mesh = ms.mesh.rectangle(10e-3, 5e-3, (2, 1)).select_nodes("all", x3=0)
+    eta, remanence = 30e3, 0.143
+    shell = ms.Shell(
+        mesh, 1e-3, ms.MicropolarNeoHookean(303e3, 7300e3, eta, 1e-4), ms.remanence.constant((remanence, 0, 0))
+    )
+    held = [ms.Prescribe("all", field, component, 0.0) for field in ("u", "w") for component in (1, 2, 3)]
+    with pytest.raises(SolveError) as caught:
+        solve(ms.Model(shell, held, ms.UniformField((0, 0, 1.0))))
+    last = caught.value.path.steps[-1]
+    assert last.load_factor == pytest.approx(2.0 * eta * MU0 / remanence, rel=1e-4)
+    assert 2.0 * math.degrees(math.acos(last.state.q[0, 0])) == pytest.approx(45.0, abs=0.5)
+    reason = caught.value.reason
+    assert "Likely cause: the couple of the field reaches the limit" in reason, reason
+    for part in ("100 % of that", "runs ahead by up to 45°", "coupling_modulus than 30 kPa"):
+        assert part in reason, reason
+    assert "mesh is too coarse" not in reason, reason
+
+
+def test_mesh_too_coarse_is_told_with_the_number_of_elements() -> None:
+    """A strip of L/h = 401 on 8 elements under a strong field turns within the element at its clamp."""
+    with pytest.raises(SolveError) as caught:
+        solve(problem.load(str(CASES / "stopped-091.toml")).model)
+    reason = caught.value.reason
+    assert "Likely cause: the mesh is too coarse for the bending: element 7" in reason, reason
+    assert "at support 'right'" in reason, reason
+    assert "5.5 times as many elements" in reason, reason
+    assert "couple" not in reason, reason
+
+
+def test_nothing_stands_out_is_said_with_the_figures() -> None:
+    discretisation = discretised(strip())
+    said = diagnosis(discretisation, discretisation.undeformed(), discretisation.model.loading(1.0), None)
+    assert said.startswith("In the last state nothing stands out: elements turn by at most 0°, det F is at least 1,")
+    ratio = 0.143 * 20e-3 / MU0 / (2.0 * rubber(THICKNESS).coupling_modulus)
+    assert f"the couple is at most {100 * ratio:.0f} % of what the micro-rotation transfers" in said
+
+
+def test_inverted_element_at_a_support_is_named() -> None:
+    discretisation = discretised(strip())
+    said = diagnosis(discretisation, discretisation.undeformed(), discretisation.model.loading(1.0), 0)
+    assert "Element 0, which is turned inside out, touches the support 'left'." in said
