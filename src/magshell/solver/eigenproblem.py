@@ -21,17 +21,17 @@ eigenvalues. Between two points a and b that have m of the roots between them, c
 
     |n(b) - n(a)| ≤ m,      n(b) - n(a) = m mod 2,
 
-as each root changes n by one, up or down. n is counted at 0, between neighbouring roots and beyond the last; where it
-contradicts, the gap is searched by linear problems about its middle, (K + (s - s_m) K') φ = 0, and by bisection.
-(Of an unsymmetric K the parity holds, as the product of the pivots is the determinant.) A pair of roots at which an
-eigenvalue touches zero and returns within one gap is not seen so.
+as each root changes n by one, up or down. n is counted at 0, between neighbouring roots and at twice, four times and so
+on the last; where it contradicts, the gap is searched by linear problems about its middle, (K + (s - s_m) K') φ = 0,
+and by bisection. (Of an unsymmetric K the parity holds, as the product of the pivots is the determinant.) Two roots at
+which eigenvalues leave and return within one gap are not seen so.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
@@ -168,7 +168,7 @@ class _Search:
         operator = LinearOperator((size, size), matvec=product, dtype=float)
         start = np.random.default_rng(self.searches).normal(size=size)
         try:
-            found = eigs(operator, k=min(wanted, size - 2), which="LM", v0=start)
+            found: tuple[Any, Any] = eigs(operator, k=min(wanted, size - 2), which="LM", v0=start)
         except ArpackNoConvergence as partly:
             found = partly.eigenvalues, partly.eigenvectors
         except ArpackError as error:
@@ -266,15 +266,16 @@ class _Search:
 
     def searched(self, s: float, low: float, high: float) -> bool:
         """Whether the linear problem about s leads to roots between two points that were not known."""
-        new = False
+        new, low, high = False, min(low, high), max(low, high)
         for guess in self.local(s):
-            pair = self.refined(guess)
-            if pair is not None and min(low, high) < pair.value < max(low, high):
-                new = self.add(pair) or new
+            if abs(guess.value - s) <= high - low and abs(guess.value) <= self.reach:
+                pair = self.refined(guess)
+                if pair is not None and low < pair.value < high:
+                    new = self.add(pair) or new
         return new
 
     def cuts(self, side: float, end: float) -> list[float]:
-        """Magnitudes, one between each two neighbouring roots on one side; those where pivots are known already."""
+        """Magnitudes on one side between neighbouring roots, where pivots are known if possible, and beyond."""
         roots = [side * pair.value for pair in self.found if 0.0 < side * pair.value < end]
         known = [side * s for s in self.counts if side * s > 0.0]
         cuts = []
@@ -282,6 +283,10 @@ class _Search:
             low, high = (1.0 + CLEAR) * one, (1.0 - CLEAR) * two
             if low < high:
                 cuts.append(next((cut for cut in known if low < cut < high), 0.5 * (low + high)))
+        beyond = 2.0 * roots[-1] if roots else 1.0
+        while beyond < end:
+            cuts.append(beyond)
+            beyond *= 2.0
         return cuts
 
     def agree(self, low: float, high: float, roots: int) -> bool:
