@@ -23,7 +23,7 @@ from typing import NamedTuple
 from magshell.arrays import FloatArray
 from magshell.assembly import Discretisation
 from magshell.errors import InputError, SolveError
-from magshell.linalg import make_solver, nested_dissection
+from magshell.linalg import SingularMatrix, make_solver, nested_dissection
 from magshell.model import Model
 from magshell.shell.state import State
 from magshell.solver.critical import normalised
@@ -168,7 +168,7 @@ def buckling(
         path.converged, path.reason = True, "the last stage is reached"
         line = LinearPath(follower.system, state)
         roots = roots_nearest_to_zero(line.tangent, linear_solver, modes, line.reach)
-    except (StepFailure, NoConvergence) as failure:
+    except (StepFailure, NoConvergence, SingularMatrix) as failure:
         path.reason = str(failure)
         raise SolveError(path.reason, path) from None
     finally:

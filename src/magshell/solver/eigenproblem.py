@@ -44,8 +44,9 @@ from magshell.linalg.solver import equilibration
 SPARE, LOCAL = 6, 6
 # An eigenvalue counts as real with an imaginary part up to this share of it.
 REAL = 1e-6
-# Relative change of s at which the refinement ends, below which it may end by round-off, and its iterations.
-TOLERANCE, ROUND_OFF, ITERATIONS = 1e-9, 1e-6, 25
+# Relative change of s at which the refinement ends (the next would be its square), that round-off may keep up, and how
+# many iterations it may take.
+TOLERANCE, ROUND_OFF, ITERATIONS = 1e-6, 1e-4, 25
 # Iterations in which a step must have halved: near a double root each one halves it, elsewhere they converge faster.
 PATIENCE = 4
 # Distances relative to s: of the difference for K', from a root at which pivots are counted, between equal roots.
@@ -181,8 +182,11 @@ class _Search:
     # -- refinement ----------------------------------------------------------------------------------------------
 
     def factorised(self, s: float) -> None:
-        """Factorise K(s)."""
-        self.solver.factorise(self.matrix(s))
+        """Factorise K(s), or K next to s where it is singular."""
+        try:
+            self.solver.factorise(self.matrix(s))
+        except SingularMatrix:
+            self.solver.factorise(self.matrix((1.0 + SAME) * s))
 
     def refined(self, guess: Eigenpair) -> Eigenpair | None:
         """The root next to a guess, whose vector is of scaled unknowns; None: the iteration finds none."""
@@ -192,7 +196,7 @@ class _Search:
             width = WIDTH * abs(s)
             change = (self.matrix(s + width) @ vector - self.matrix(s - width) @ vector) / (2.0 * width)
             try:
-                self.factorised(s)
+                self.solver.factorise(self.matrix(s))
             except SingularMatrix as singular:
                 return Eigenpair(s, singular.null_vector)
             ahead = self.solver.solve(change)
@@ -300,9 +304,6 @@ class _Search:
     def count(self, s: float) -> int | None:
         """Negative pivots of K(s)."""
         if s not in self.counts:
-            try:
-                self.factorised(s)
-            except SingularMatrix:
-                self.factorised((1.0 + SAME) * s)
+            self.factorised(s)
             self.counts[s] = self.solver.negative_pivots()
         return self.counts[s]
