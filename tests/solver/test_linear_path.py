@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.sparse.linalg import eigsh
 
 import magshell as ms
+from magshell.assembly import Discretisation
 from magshell.cli import main
+from magshell.linalg import make_solver, nested_dissection
 from magshell.mesh import Mesh
 from magshell.solver.buckling import FAR
+from magshell.solver.linear_path import LinearPath
+from magshell.solver.newton import System
 
 THICKNESS, LENGTH, SHEAR = 0.2e-3, 0.1, 100e3
 MICRO = ms.MicropolarStVenantKirchhoff(SHEAR, 0.0, SHEAR / 10, THICKNESS / 100)
@@ -102,6 +107,38 @@ def test_a_cantilever_on_edge_tips_over_sideways(width, formula, path):
     mode = found.modes[0].mode
     assert np.abs(mode[:, 2]).max() == pytest.approx(1.0)
     assert np.abs(mode[:, :2]).max() < 0.05
+
+
+def line_of(model):
+    """The linear path of a model from its undeformed state."""
+    discretisation = Discretisation(model, nested_dissection)
+    system = System(discretisation, make_solver("superlu"), model.course(0), ms.Settings())
+    return LinearPath(system, discretisation.undeformed())
+
+
+def test_to_first_order_it_would_tip_at_a_fifth_of_the_load():
+    """K0 + t K' alone lacks the square of what the path changes of the strain operator: with it, all is there."""
+    line, solver = line_of(on_edge()), make_solver("superlu")
+    start, ahead, back = (line.tangent(s) for s in (0.0, 1e-2, -1e-2))
+    first, second = 50.0 * (ahead - back), 5e3 * (ahead + back - 2.0 * start)
+    ratio = eigsh(-first, k=1, M=start, which="LA", v0=np.ones(start.shape[0]), return_eigenvectors=False)[0]
+    assert line.unit / ratio == pytest.approx(0.0573, rel=1e-2)
+    for share, pivots in ((0.99, 0), (1.01, 1)):
+        s = share * 0.30658 / line.unit
+        solver.factorise(start + s * first + s**2 * second)
+        assert solver.negative_pivots() == pivots
+
+
+def test_the_linear_path_has_the_rotation_and_strain_of_a_beam():
+    """A cantilever turns by P L² / 2 E I at its end; its strain P x y / E I is taken at the points of the rule."""
+    width, force = 4e-3, 1e-6
+    line = line_of(on_edge(width, force))
+    bending = 2.0 * SHEAR * width**3 * THICKNESS / 12.0
+    assert line.rotation == pytest.approx(line.unit * force * LENGTH**2 / (2.0 * bending), rel=2e-2)
+    inside = 0.5 * (1.0 - 3.0**-0.5)  # of an element's sides, the distance of the first point from its edge
+    x, y = LENGTH * (1.0 - inside / 20), 0.5 * width * (1.0 - inside)
+    assert line.strain == pytest.approx(line.unit * force * x * y / bending, rel=1e-2)
+    assert max(line.rotation, line.strain) == pytest.approx(0.02)
 
 
 @pytest.mark.parametrize("width", [4e-3, 8e-3], ids=["4 mm", "8 mm"])

@@ -57,7 +57,7 @@ class BucklingMode(NamedTuple):
     mode : ndarray, shape (nodes, 10)
         Global axes, the largest displacement 1 m.
     strain, rotation : float
-        The largest (rad) that the linear path reaches at that load factor.
+        The largest (rad) that the linear path has at that load factor at the points of the integration rule.
     """
 
     number: int
