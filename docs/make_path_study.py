@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import argparse
 
-from path_study import arch, energy, pump, random_models, strip, turning
+from path_study import arch, energy, multipliers, pump, random_models, strip, turning
 from path_study.page import write
 from path_study.runs import Runs
 
@@ -20,6 +20,7 @@ PARTS = {
     "strip": strip.study,
     "turning": turning.study,
     "energy": energy.study,
+    "multipliers": multipliers.study,
     "pump": pump.study,
     "random": random_models.study,
 }

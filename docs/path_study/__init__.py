@@ -1,1 +1,1 @@
-"""The parts of `make_path_study.py`: runs, the arch, the strip, the pump, turning field and weight, energy."""
+"""The parts of `make_path_study.py`: runs, arch, strip, pump, turning field and weight, energy, multipliers."""

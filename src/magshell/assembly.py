@@ -198,6 +198,7 @@ class Discretisation:
         stresses: loops.Stresses | None = None,
         imposed: FloatArray | None = None,
         tangent: bool = True,
+        mixed: bool | None = None,
     ) -> Assembly:
         """Residual and tangent of a state.
 
@@ -212,6 +213,8 @@ class Discretisation:
             Increments of held components, in the nodes' frames, that the right side accounts for.
         tangent : bool
             Without it only the residual is made.
+        mixed : bool, optional
+            Whether the stresses are used. By default unless φ is eliminated: `predicted_stresses` know nothing of it.
 
         Raises
         ------
@@ -220,7 +223,8 @@ class Discretisation:
         """
         model, out = self.model, self._out
         elements, points, levels = self.body.geometry.volume.shape
-        mixed = stresses is not None and not self.body.plane_stress
+        if mixed is None:
+            mixed = stresses is not None and not self.body.plane_stress
         if stresses is None:
             stresses = loops.Stresses(np.zeros((elements, points, levels, 3, 3)), np.zeros((elements, points, 2, 3)))
         if imposed is None:

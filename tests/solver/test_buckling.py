@@ -1,4 +1,4 @@
-"""Linear buckling: Euler's column, the bifurcation of a path, a loaded state."""
+"""Linear buckling where nothing moves before: Euler's column, the bifurcation of a path, a loaded state."""
 
 from __future__ import annotations
 
@@ -14,6 +14,34 @@ from magshell.output.buckling import write_buckling
 YOUNG, LENGTH, WIDTH, THICKNESS = 1e6, 1.0, 0.1, 0.01
 # Of an elastic line clamped at one end.
 EULER = np.pi**2 * YOUNG * WIDTH * THICKNESS**3 / 12 / (4 * LENGTH**2)
+
+# The same column as a problem file.
+COLUMN = f"""
+[mesh]
+generator = "rectangle"
+length = "1 m"
+width = "0.1 m"
+elements = [10, 1]
+
+[shell]
+thickness = "10 mm"
+
+[material]
+law = "micropolar-st-venant-kirchhoff"
+shear_modulus = "500 kPa"
+lame_lambda = 0
+coupling_modulus = "50 kPa"
+length_scale = "0.1 mm"
+
+[[loads]]
+kind = "force"
+group = "right"
+total = ["{-EULER} N", 0, 0]
+
+[[supports]]
+kind = "clamp"
+group = "left"
+"""
 
 
 def column(load, micro_rotation=False, **options):
@@ -71,12 +99,17 @@ def test_modes_are_written(tmp_path):
     with open(tmp_path / "buckling.csv", encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert [float(row["load_factor"]) for row in rows] == [mode.load_factor for mode in found.modes]
+    assert [float(row["rotation"]) for row in rows] == [mode.rotation for mode in found.modes]
+    assert [float(row["strain"]) for row in rows] == [mode.strain for mode in found.modes]
     assert all((tmp_path / row["mode"]).exists() for row in rows)
     assert len(pictures) == 1
 
 
 def test_command(tmp_path, capsys):
-    assert main(["buckling", "strip-10", "--modes", "1", "--out", str(tmp_path)]) == 0
-    assert "mode 1: load factor" in capsys.readouterr().out
-    assert main(["buckling", "strip-10", "--modes", "0", "--out", str(tmp_path)]) == 2
+    problem = tmp_path / "column.toml"
+    problem.write_text(COLUMN, encoding="utf-8")
+    assert main(["buckling", str(problem), "--modes", "1", "--out", str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    assert "mode 1: load factor 1.00" in said, said
+    assert main(["buckling", str(problem), "--modes", "0", "--out", str(tmp_path)]) == 2
     assert "modes is 0" in capsys.readouterr().err

@@ -9,7 +9,7 @@ from magshell.cli.console import complain, console, say, say_doubts
 from magshell.cli.folders import made
 from magshell.cli.status import NOT_SOLVED, SOLVED
 from magshell.errors import SolveError
-from magshell.units import FLUX_DENSITY, show
+from magshell.units import ANGLE, FLUX_DENSITY, show
 
 ABOUT = "estimate the loads at which a problem buckles, and the modes"
 EXAMPLES = """
@@ -18,7 +18,8 @@ examples:
   magshell buckling my-plate.toml --modes 8 --out results
 
 The stages before the last one are followed; the multipliers are load factors of the last stage, about the state that
-they lead to (with one stage: about the undeformed state). Negative: the loading reversed.
+they lead to (with one stage: about the undeformed state). Negative: the loading reversed. They are good where the part
+turns and strains little before it buckles; how much is told with each.
 DIR receives buckling.csv and buckling/ (the modes, for ParaView and as pictures)."""
 
 
@@ -49,14 +50,15 @@ def run(given: argparse.Namespace) -> int:
     except SolveError as error:
         complain(f"{problem.source}: not solved: {error.reason}")
         return NOT_SOLVED
-    if not found.modes:
+    if not found.modes and not found.doubts:
         say(out, "no real multipliers: the loading does not make the tangent singular")
     for mode in found.modes:
         magnitude = sum(component**2 for component in mode.flux_density.tolist()) ** 0.5
         field = f" ({show(magnitude, FLUX_DENSITY)})" if magnitude else ""
-        say(out, f"mode {mode.number}: load factor {mode.load_factor:.6g}{field}")
-    if found.modes:
-        say(out, "estimates, good where little moves before the part buckles; a part that bends at once: magshell run")
+        before = f"rotation before it {show(mode.rotation, ANGLE)}, strain {100.0 * mode.strain:.2g} %"
+        say(out, f"mode {mode.number}: load factor {mode.load_factor:.6g}{field}; {before}")
+    for doubt in found.doubts:
+        say(out, f"warning: {doubt}", style="yellow")
     for picture in write_buckling(found, directory):
         say(out, f"picture: {picture}")
     say(out, f"results: {directory} (buckling.csv; buckling/ opens in ParaView)")

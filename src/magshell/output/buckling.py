@@ -18,7 +18,7 @@ from magshell.solver.path import Step
 if TYPE_CHECKING:
     from magshell.solver.buckling import Buckling, BucklingMode
 
-HEADING = ("number", "load_factor", "B1", "B2", "B3", "mode")
+HEADING = ("number", "load_factor", "B1", "B2", "B3", "mode", "strain", "rotation")
 # Largest displacement of a mode in its picture, in sizes of the body.
 SHOWN = 0.15
 
@@ -50,7 +50,7 @@ def write_buckling(buckling: Buckling, directory: str | os.PathLike[str]) -> lis
         name = f"buckling/mode-{mode.number:02d}.vtu"
         write_mode(folder / name, buckling.path.discretisation, mode)
         numbers = [repr(float(value)) for value in (mode.load_factor, *mode.flux_density)]
-        rows.append(csv_line([str(mode.number), *numbers, name]))
+        rows.append(csv_line([str(mode.number), *numbers, name, repr(float(mode.strain)), repr(float(mode.rotation))]))
         try:
             pictures.append(_draw(buckling, mode, (folder / name).with_suffix(".png")))
         except RenderingUnavailable as unavailable:

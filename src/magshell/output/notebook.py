@@ -62,9 +62,10 @@ def path_html(path: Path) -> str:
 
 
 def buckling_html(buckling: Buckling) -> str:
-    """The first modes; load factor and field of each."""
+    """The first modes; load factor and field of each, and what speaks against them."""
     picture = _picture(lambda: _modes_figure(buckling)) if buckling.modes else ""
-    return _page("Buckling", picture, [(f"mode {mode.number}", _multiplier(mode)) for mode in buckling.modes])
+    rows = [(f"mode {mode.number}", _multiplier(mode)) for mode in buckling.modes]
+    return _page("Buckling", picture, rows, buckling.doubts)
 
 
 def _page(title: str, picture: str, rows: Rows, doubts: Sequence[str] = ()) -> str:

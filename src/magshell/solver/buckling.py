@@ -1,12 +1,18 @@
-r"""Linear buckling: where the tangent would become singular if it went on changing as it begins to.
+r"""Linear buckling: where the tangent along the linear path is singular.
 
-About the state at the start of the last stage, with its load factor t from there on, the tangent along the path is
+From the state at the start of the last stage the path is taken for straight: displacements *and* stresses grow in
+proportion to the load factor t, by the increment v' = K⁻¹ q per load factor. The mixed tangent along it
+(`linear_path.py`) is singular at the multipliers,
 
-    K(t) = K + t K' + O(t²),      K' = dK/dt = ∂K/∂v · v' + ∂K/∂t,      v' = K⁻¹ q,
+    K(t) φ = 0,
 
-so that (K + t K') φ = 0 has the solutions t = 1/ν with the eigenvalues of largest magnitude in -K⁻¹ K' φ = ν φ: shift
-and invert about t = 0 (Arnoldi, by ARPACK). K' is a central difference along the path. The estimate is good where the
-shell moves little before it buckles, and as bad as that assumption elsewhere.
+a nonlinear eigenproblem, as K(t) is nearly quadratic in t. Its real roots nearest to 0 and their modes are found
+without passing one (`eigenproblem.py`), in a unit of t over which the path moves a little, so that they do not depend
+on how large the reference load is. No nonlinear equation is solved.
+
+What is left out is how the path bends. With θ the rotation up to the multiplier, its relative error is a few θ in
+an arch, and less where the load acts along the stiff direction. Each mode tells θ and the strain; from `FAR` on the
+multiplier is not to be relied on.
 """
 
 from __future__ import annotations
@@ -14,28 +20,24 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-import numpy as np
-import scipy.sparse as sp
-
 from magshell.arrays import FloatArray
-from magshell.assembly import Discretisation, InvertedElement
+from magshell.assembly import Discretisation
 from magshell.errors import InputError, SolveError
-from magshell.linalg import make_solver, nested_dissection
+from magshell.linalg import SingularMatrix, make_solver, nested_dissection
 from magshell.model import Model
 from magshell.shell.state import State
-from magshell.solver.constraints import Metric
 from magshell.solver.critical import normalised
+from magshell.solver.eigenproblem import NoConvergence, roots_nearest_to_zero
 from magshell.solver.events import Observer
 from magshell.solver.follower import Follower
-from magshell.solver.newton import Solution, StepFailure, System, Trial
+from magshell.solver.linear_path import REACH, LinearPath
+from magshell.solver.newton import StepFailure, System
 from magshell.solver.path import Path
 from magshell.solver.settings import Settings
-from magshell.solver.track import Slope, point_at
+from magshell.units import ANGLE, show
 
-# Length of the path, displacements over the body's size, over which K' is differenced to either side.
-DIFFERENCE = 1e-6
-# An eigenvalue counts as real with an imaginary part up to this share of it.
-REAL = 1e-6
+# Strain, or rotation in rad, from which the linear path has gone too far for its multiplier to be relied on.
+FAR = 0.02
 
 
 class BucklingMode(NamedTuple):
@@ -54,6 +56,8 @@ class BucklingMode(NamedTuple):
         About which it is.
     mode : ndarray, shape (nodes, 10)
         Global axes, the largest displacement 1 m.
+    strain, rotation : float
+        The largest (rad) that the linear path has at that load factor at the points of the integration rule.
     """
 
     number: int
@@ -62,16 +66,65 @@ class BucklingMode(NamedTuple):
     flux_density: FloatArray
     state: State
     mode: FloatArray
+    strain: float
+    rotation: float
+
+    @property
+    def far(self) -> bool:
+        """Whether the linear path has gone too far there for the multiplier to be relied on."""
+        return max(self.strain, self.rotation) > FAR
 
     def __repr__(self) -> str:
         return f"BucklingMode({self.number}: load factor {self.load_factor:.6g} of stage {self.stage + 1})"
 
 
 class Buckling(NamedTuple):
-    """Buckling modes, and the path through the stages before the last one."""
+    """Buckling modes, and the path through the stages before the last one.
+
+    Attributes
+    ----------
+    path : Path
+    modes : list of BucklingMode
+    counted : float or None
+        Magnitude of the load factor up to which the negative pivots of the tangent tell of no other multipliers; None:
+        the linear solver cannot count them.
+    reach : float
+        Magnitude of the load factor up to which multipliers are looked for: there the linear path has a strain or a
+        rotation (rad) of 0.1. Infinite where the load moves nothing.
+    """
 
     path: Path
     modes: list[BucklingMode]
+    counted: float | None
+    reach: float
+
+    @property
+    def doubts(self) -> list[str]:
+        """What speaks against relying on the multipliers or on their being all, a sentence each."""
+        found: list[str] = []
+        far = [mode for mode in self.modes if mode.far]
+        if far:
+            names = ", ".join(str(mode.number) for mode in far)
+            turn, strain = show(max(mode.rotation for mode in far), ANGLE), max(mode.strain for mode in far)
+            found.append(
+                f"mode{'s' * (len(far) > 1)} {names}: the part turns by up to {turn} and strains by up to "
+                f"{100.0 * strain:.2g} % before it buckles; the estimate assumes that it hardly moves. "
+                "Follow the path (magshell run)"
+            )
+        if self.counted is None:
+            found.append(f"{self.path.solver_name} counts no negative pivots: a multiplier may have been passed")
+        elif self.modes and self.counted < abs(self.modes[-1].load_factor):
+            found.append(
+                f"beyond a load factor of ±{self.counted:.6g} the negative pivots of the tangent tell of more "
+                "multipliers than were found"
+            )
+        elif self.counted >= self.reach:
+            found.append(
+                f"no {'other ' * bool(self.modes)}multiplier up to a load factor of ±{self.reach:.6g}, where the "
+                f"linear path turns the part by {show(REACH, ANGLE)} or strains it by {100.0 * REACH:.0f} %, and ends. "
+                "A part that bends at once has none: follow the path (magshell run)"
+            )
+        return found
 
     def _repr_html_(self) -> str:
         from magshell.output.notebook import buckling_html
@@ -88,7 +141,7 @@ def buckling(
     ----------
     model : Model
     modes : int
-        How many are wanted; there may be fewer, as only real ones are kept.
+        How many are wanted; there may be fewer, as the linear path ends where it has gone much too far.
     settings : Settings, optional
     observers : sequence of Observer
         Told of the stages before the last.
@@ -111,55 +164,32 @@ def buckling(
         for observer in observers:
             observer.started(discretisation, settings)
         follower.run(len(model.stages) - 1)
-        state, arc_length = follower.enter(len(model.stages) - 1)[:2]
+        state = follower.enter(len(model.stages) - 1).state
         path.converged, path.reason = True, "the last stage is reached"
-        slope = _slope(follower.system, follower.metric, state, arc_length)
-        load_factors, vectors = _eigenpairs(follower.system, state, slope, modes)
-    except StepFailure as failure:
+        line = LinearPath(follower.system, state)
+        roots = roots_nearest_to_zero(line.tangent, linear_solver, modes, line.reach)
+    except (StepFailure, NoConvergence, SingularMatrix) as failure:
         path.reason = str(failure)
         raise SolveError(path.reason, path) from None
     finally:
         for observer in observers:
             observer.finished(path)
-    course, found = follower.system.course, []
-    for number, (load_factor, vector) in enumerate(zip(load_factors.tolist(), vectors, strict=True), start=1):
+    found = []
+    for number, (value, vector) in enumerate(roots.pairs, start=1):
+        load_factor, size = value * line.unit, abs(value)
+        flux_density = follower.system.course.at(load_factor).flux_density
         mode = normalised(discretisation.expand(vector))
-        flux_density = course.at(load_factor).flux_density
-        found.append(BucklingMode(number, len(model.stages) - 1, load_factor, flux_density, state, mode))
-    return Buckling(path, found)
-
-
-def _slope(system: System, metric: Metric, state: State, arc_length: float) -> Slope:
-    """The direction of the path at the start of the stage; leaves its tangent factorised."""
-    trial = Trial(state, 0.0, system.discretisation.stresses_at(state))
-    solution = Solution(trial, system.assemble(trial), [0.0], None)
-    return point_at(system, metric, solution, arc_length, (np.zeros_like(state.u), 1.0)).slope
-
-
-def _eigenpairs(system: System, state: State, slope: Slope, wanted: int) -> tuple[FloatArray, list[FloatArray]]:
-    """Load factors, rising in magnitude, and their modes (dofs,)."""
-    from scipy.sparse.linalg import ArpackError, LinearOperator, eigs
-
-    ahead, back = (_tangent(system, state, slope, side * DIFFERENCE) for side in (1.0, -1.0))
-    change = (ahead - back) / (2.0 * DIFFERENCE * slope.load)
-    solve, size = system.linear_solver.solve, system.discretisation.dofs
-    operator = LinearOperator((size, size), matvec=lambda vector: -solve(change @ vector), dtype=float)
-    start = np.random.default_rng(0).normal(size=size)
-    try:
-        values, vectors = eigs(operator, k=wanted, which="LM", v0=start)
-    except ArpackError as error:
-        raise StepFailure(f"the eigenvalues do not converge: {error}") from None
-    real = np.flatnonzero((np.abs(values.imag) <= REAL * np.abs(values)) & (np.abs(values) > 0.0))
-    real = real[np.argsort(-np.abs(values[real]))]
-    return 1.0 / values[real].real, [vectors[:, number].real for number in real]
-
-
-def _tangent(system: System, state: State, slope: Slope, distance: float) -> sp.csc_array:
-    """A copy of the plain tangent a distance along the path."""
-    moved = state.moved(distance * slope.increment, distance * slope.d_alpha)
-    try:
-        assembly = system.discretisation.assemble(moved, system.course.at(distance * slope.load))
-    except InvertedElement as inverted:
-        raise StepFailure(f"element {inverted.element} is turned inside out next to the state") from None
-    assert assembly.matrix is not None
-    return assembly.matrix.copy()
+        found.append(
+            BucklingMode(
+                number=number,
+                stage=len(model.stages) - 1,
+                load_factor=load_factor,
+                flux_density=flux_density,
+                state=state,
+                mode=mode,
+                strain=size * line.strain,
+                rotation=size * line.rotation,
+            )
+        )
+    counted = None if roots.counted is None else roots.counted * line.unit
+    return Buckling(path, found, counted, line.reach * line.unit)

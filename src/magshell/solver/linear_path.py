@@ -1,0 +1,175 @@
+r"""The linear path from a loaded state, and the mixed tangent along it.
+
+With v' the increment per load factor by the tangent of the state (α condensed, recovered with it), the linear path is
+
+    v(t) = v0 + t v',      S(t) = S0 + t S',      S' = U⁻¹ (C : U' - U' S0)  and the same for the couple stress,
+
+its configuration and its stresses both of first order in t. The tangent K(t) is the *mixed* one: strains vary as the
+configuration v(t) says, their second variation works on S(t), not on the stresses of that configuration,
+
+    K(t) = ∫ B(v(t))ᵀ C B(v(t)) + G(S(t)) + loads.
+
+For displacements alone B is linear in v, so K(t) is quadratic in t; rotations of nodes add a little. Why not the
+stresses of v(t): a straight increment that turns the shell by θ stretches it by θ²/2, which the true path does not.
+Times the stiffness of membrane and shear, that is as large as what buckles the shell. In the mixed tangent it never
+enters (the reason why Newton's method takes it, `newton.py`). Nor may K(t) be cut off at first order: the square
+t² B(v')ᵀ C B(v') would be missing, and with it that a stiff shell which turns stays stiff.
+
+The path is measured by the part of its displacement gradient t F' F0⁻¹ that is symmetric (strain) and that is not
+(rotation), both linear in t. These say how far the assumption holds, and in which unit t is counted: results do not
+depend on the size of the reference load.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+
+from magshell.assembly import InvertedElement
+from magshell.linalg.solver import equilibration
+from magshell.loading import Loading
+from magshell.materials.law import Material, strain_energy
+from magshell.shell.evaluation import evaluate, micropolar_stretch, plane_stress_stretch
+from magshell.shell.loops import Body, Stresses
+from magshell.shell.state import State
+from magshell.solver.newton import StepFailure, System, Trial, factorise
+
+# Strain or rotation at s = 1, and the most that the scaled tangent may change up to there.
+UNIT, CHANGE = 0.02, 0.1
+# Strain or rotation at s = 1 that is round-off, and up to which the linear path is followed.
+MOTIONLESS, REACH = 1e-9, 0.1
+PASSES = 20
+# Real and imaginary steps for the stresses of shells in plane stress.
+STEP, IMAGINARY = 0.05, 1e-30
+
+
+class LinearPath:
+    """The linear path of a stage, at load factors t = s `unit`.
+
+    Attributes
+    ----------
+    unit : float
+    strain, rotation : float
+        The largest in the shell at s = 1; rotation in rad.
+
+    Raises
+    ------
+    StepFailure
+        The tangent of the state is singular.
+    """
+
+    def __init__(self, system: System, state: State) -> None:
+        self.system, self.state = system, state
+        discretisation = system.discretisation
+        trial = Trial(state, 0.0, discretisation.stresses_at(state))
+        self._assembly = discretisation.assemble(state, system.course.at(0.0), trial.stresses)
+        factorise(system, self._assembly)
+        self.unit = 1.0
+        for _ in range(2):  # twice: in a unit that suits the load, no digits are lost beside forces that are there
+            self._advance(trial.stresses)
+            self.strain, self.rotation = self._motion()
+            if self.motion > 0.0:
+                self.unit *= UNIT / self.motion
+        self._advance(trial.stresses)
+        self.strain, self.rotation = self._motion()
+        self._stresses, self._stress_rate = self._along(trial.stresses)
+        self._fit()
+
+    @property
+    def motion(self) -> float:
+        """Strain or rotation at s = 1, whichever is larger."""
+        return max(self.strain, self.rotation)
+
+    @property
+    def reach(self) -> float:
+        """Largest s for which the path stands for anything; infinite where nothing moves."""
+        return REACH / self.motion if self.motion > MOTIONLESS else np.inf
+
+    def tangent(self, s: float) -> sp.csc_array:
+        """A copy of the mixed tangent at s.
+
+        Raises
+        ------
+        StepFailure
+            An element is turned inside out there.
+        """
+        stresses = Stresses(*(now + s * rate for now, rate in zip(self._stresses, self._stress_rate, strict=True)))
+        moved = self.state.moved(s * self._increment, s * self._d_alpha)
+        try:
+            loading = self.system.course.at(s * self.unit)
+            matrix = self.system.discretisation.assemble(moved, loading, stresses, mixed=True).matrix
+        except InvertedElement as inverted:
+            raise StepFailure(f"element {inverted.element} is turned inside out on the linear path") from None
+        assert matrix is not None
+        return matrix.copy()
+
+    def _advance(self, stresses: Stresses) -> None:
+        """The increment at s = 1."""
+        discretisation, course = self.system.discretisation, self.system.course
+        rate = Loading(*(self.unit * one for one in course.rate(0.0)))
+        direction = discretisation.load_direction(self.state, course.at(0.0), rate, stresses, self._assembly)
+        solution = self.system.linear_solver.solve(direction)
+        self._increment = discretisation.expand(solution, discretisation.imposed(rate.held))
+        self._d_alpha = discretisation.recover(self._increment) - discretisation.recover(np.zeros_like(self._increment))
+
+    def _motion(self) -> tuple[float, float]:
+        """Largest strain and rotation of t F' F0⁻¹ at s = 1. (F is quadratic in s, so that the difference is exact.)"""
+        body, state = self.system.discretisation.body, self.state
+        ahead, back = (
+            evaluate(body, state.moved(side * self._increment, side * self._d_alpha)).F for side in (1.0, -1.0)
+        )
+        gradient = 0.5 * (ahead - back) @ np.linalg.inv(evaluate(body, state).F)
+        turned = np.swapaxes(gradient, -1, -2)
+        strain, spin = 0.5 * (gradient + turned), 0.5 * (gradient - turned)
+        return float(np.linalg.norm(strain, 2, (-2, -1)).max()), float(np.linalg.norm(spin, 2, (-2, -1)).max())
+
+    def _along(self, stresses: Stresses) -> tuple[Stresses, Stresses]:
+        """Stresses of the state, and what they grow by up to s = 1."""
+        discretisation, state, increment, d_alpha = (
+            self.system.discretisation,
+            self.state,
+            self._increment,
+            self._d_alpha,
+        )
+        if not discretisation.body.plane_stress:
+            ahead = discretisation.predicted_stresses(state, increment, d_alpha)
+            return stresses, Stresses(*(one - now for one, now in zip(ahead, stresses, strict=True)))
+        body, material = discretisation.body, discretisation.model.shell.material
+        back, now, ahead = (
+            _plane_stresses(body, state.moved(step * increment, step * d_alpha), material)
+            for step in (-STEP, 0.0, STEP)
+        )
+        return now, Stresses(*((two - one) / (2.0 * STEP) for one, two in zip(back, ahead, strict=True)))
+
+    def _fit(self) -> None:
+        """Make the unit one over which the loads change the tangent little, but not only by round-off."""
+        start = self.tangent(0.0)
+        scale = equilibration(start)
+        columns = np.repeat(scale, np.diff(start.indptr))
+        for _ in range(PASSES):
+            try:
+                difference = np.abs((self.tangent(1.0).data - start.data) * scale[start.indices] * columns).max()
+            except StepFailure:
+                difference = 10.0 * CHANGE
+            small = difference < 0.1 * CHANGE and self.motion <= MOTIONLESS
+            if difference == 0.0 or not (difference > CHANGE or small):
+                return
+            self._stretch(0.5 * CHANGE / difference)
+
+    def _stretch(self, factor: float) -> None:
+        self.unit, self.strain, self.rotation = factor * self.unit, factor * self.strain, factor * self.rotation
+        self._increment, self._d_alpha = factor * self._increment, factor * self._d_alpha
+        self._stress_rate = Stresses(*(factor * rate for rate in self._stress_rate))
+
+
+def _plane_stresses(body: Body, state: State, material: Material) -> Stresses:
+    """Stresses S = U⁻¹ P with the stretch φ that plane stress makes, P by a complex step."""
+    fields = evaluate(body, state, plane_stress_stretch(body, state, material))
+    U = micropolar_stretch(fields)
+    P = np.empty_like(U)
+    for i, j in np.ndindex(3, 3):
+        moved = U.astype(complex)
+        moved[i, j] += 1j * IMAGINARY
+        P[i, j] = strain_energy(material, moved).imag / IMAGINARY
+    U, P = (np.moveaxis(tensor, (0, 1), (-2, -1)) for tensor in (U, P))
+    return Stresses(np.ascontiguousarray(np.linalg.solve(U, P)), np.ascontiguousarray(fields.kappa))
