@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import logging
 import os
 import sys
 from collections.abc import Sequence
@@ -58,6 +59,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         0 solved, 1 not solved, 2 bad input, 130 interrupted.
     """
     given = _parser().parse_args(arguments)
+    logging.getLogger("magshell.symmetry").addHandler(logging.NullHandler())  # commands say what is broken themselves
     try:
         return int(given.command(given))
     except InputError as error:
