@@ -15,11 +15,10 @@ from magshell.mesh.files import FileMesh
 from magshell.mesh.geometry import centres, unit
 from magshell.mesh.quality import worst
 from magshell.nodal import width
-from magshell.problem import load_report, schema, symmetry_report
+from magshell.problem import load_report, remanence_report, schema, symmetry_report
 from magshell.problem.building import Problem
 from magshell.problem.fields import DIMENSION_OF_FIELD
 from magshell.problem.load_report import Strength
-from magshell.problem.remanence_report import sense
 from magshell.problem.wording import counted, quantity, vector
 from magshell.units import DENSITY, FLUX_DENSITY, LENGTH, STRESS, show
 
@@ -188,9 +187,9 @@ def _remanence(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]
     mesh, magnitude = problem.model.shell.mesh, figures.remanence
     for entry in problem.file.remanence:
         for group in entry.group or ():
-            yield group, f"{_span(magnitude, mesh.elements_of(group))}, {sense(entry)}"
+            yield group, f"{_span(magnitude, mesh.elements_of(group))}, {remanence_report.sense(entry)}"
         if entry.group is None:
-            yield "everywhere", f"{_span(magnitude, np.arange(len(magnitude)))}, {sense(entry)}"
+            yield "everywhere", f"{_span(magnitude, np.arange(len(magnitude)))}, {remanence_report.sense(entry)}"
     bare = int((magnitude == 0.0).sum())
     if bare:
         yield "none in", f"{bare} of {len(magnitude)} elements"
@@ -291,6 +290,7 @@ def _doubts(problem: Problem, figures: _Figures, strong: Strength) -> Iterator[s
         yield f"the bending load is {figures.bending_load:.2g}: the shell will hardly move; check the units"
     elif figures.bending_load > 1e5:
         yield f"the bending load is {figures.bending_load:.2g}: far beyond any experiment; check the units"
+    yield from remanence_report.doubts(problem)
     yield from load_report.doubts(problem, strong)
     yield from symmetry_report.doubts(problem)
     if problem.model.constraints.fixed[:, :3].all():

@@ -1,4 +1,4 @@
-"""Problems with mirror planes: what `check` says of the other half, and what breaks a plane."""
+"""Slips that `check` and `run` tell: mirror planes that something breaks, supports everywhere, places between elements."""
 
 from __future__ import annotations
 
@@ -111,6 +111,18 @@ def test_a_remanence_of_a_group_says_nothing_of_the_other_half() -> None:
     report = describe(problem_of(text))
     assert not report.warnings
     assert dict(report.sections["Supports"])["far"].endswith("the other half has the remanence mirrored")
+
+
+def test_elements_between_two_places(tmp_path: Path) -> None:
+    """A table at the nodes of a grid, not at the centres of the elements."""
+    rows = "".join(f"{5 * i};{y};0;{143 * i};0;0\n" for i in range(5) for y in (0, 5))
+    (tmp_path / "scan.csv").write_text(f"X1 [mm];X2;X3;b1;b2;b3\n{rows}")
+    table = 'kind = "file"\nfile = "scan.csv"\nflux_density_unit = "μT"\nlength_unit = "mm"'
+    text = changed(STRIP, (CONSTANT, table))
+    problem = build(check(parse(text, "test.toml"), "test.toml"), "test.toml", folder=tmp_path)
+    expected = "remanence: 4 elements (first element 0) with several places of the table as near: the mean is taken"
+    assert expected in "\n".join(describe(problem).warnings)
+    assert np.abs(problem.model.shell.remanence_at_points[:, 0, 0] / 143e-6 - [0.5, 1.5, 2.5, 3.5]).max() < 1e-12
 
 
 def test_supports_that_hold_every_node() -> None:
