@@ -12,6 +12,23 @@ from contextlib import contextmanager, suppress
 from typing import IO
 
 
+def read_at_most(path: pathlib.Path, most: int) -> bytes:
+    """The bytes of a file from anybody.
+
+    Raises
+    ------
+    OSError
+        It cannot be read.
+    ValueError
+        It has more than `most`.
+    """
+    with open(path, "rb") as file:
+        content = file.read(most + 1)
+    if len(content) > most:
+        raise ValueError(f"it has more than {most} bytes")
+    return content
+
+
 @contextmanager
 def naming(path: pathlib.Path) -> Iterator[None]:
     """Make every OSError of the block carry the path (a full disk does not say which file it was)."""

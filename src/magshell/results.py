@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from magshell import __version__, problem
 from magshell.errors import InputError
 from magshell.files import naming, write_atomically
-from magshell.output import checkpoint
+from magshell.output import checkpoint, step_checks
 from magshell.output.checkpoint import CheckpointWriter, Origin
 from magshell.output.critical import CriticalWriter
 from magshell.output.history import HistoryWriter
@@ -23,7 +23,9 @@ from magshell.output.vtu import VtuWriter
 from magshell.problem import copies
 from magshell.problem.building import Problem
 from magshell.solver import Observer, Path
+from magshell.solver.newton import StepFailure
 from magshell.solver.waypoint import Waypoint, path_through
+from magshell.units import shortened
 
 PROBLEM = "problem.toml"
 
@@ -75,7 +77,14 @@ def read(directory: str | os.PathLike[str]) -> Results:
         raise InputError(f"{folder}: no step has converged there yet; `magshell run --resume` begins it")
     found = problem.load(folder / PROBLEM)
     origins: list[Origin] = []
-    path = path_through(found.model, found.settings, _waypoints(found, files, origins))
+    try:
+        path = path_through(found.model, found.settings, _waypoints(found, files, origins))
+    except StepFailure as failure:
+        raise InputError(f"{folder / checkpoint.FOLDER}: its steps are no path: {failure}; run it anew") from None
+    fault = step_checks.fault_of_path(path)
+    if fault is not None:
+        number, what = fault
+        raise InputError(f"{files[number]}: is damaged or was changed: {what}. {checkpoint.remedy(number)}")
     return Results(found, path, _notes(path, origins[-1]))
 
 
@@ -138,8 +147,9 @@ def _waypoints(source: Problem, files: Iterable[pathlib.Path], origins: list[Ori
     own = copies.digest(source)
     mesh, modes = source.model.shell.mesh, source.model.shell.element.vectors
     shapes = (len(mesh.points), 3), (len(mesh.elements), modes, 3)
+    most, before = step_checks.most_bytes(source.model), None
     for number, file in enumerate(files):
-        waypoint, origin = checkpoint.read_step(file)
+        waypoint, origin = checkpoint.read_step(file, most)
         if waypoint.step.number != number:
             raise InputError(f"{file.with_name(checkpoint.step_name(number))}: is missing. {checkpoint.remedy(number)}")
         if origin.problem != own:
@@ -152,7 +162,11 @@ def _waypoints(source: Problem, files: Iterable[pathlib.Path], origins: list[Ori
                 f"{file}: is of another mesh than {PROBLEM} makes now (magshell {origin.magshell} made the step, this "
                 f"is {__version__}); run it anew with --out"
             )
+        fault = step_checks.fault_of(waypoint, before, source.model)
+        if fault is not None:
+            raise InputError(f"{file}: is damaged or was changed: {fault}. {checkpoint.remedy(number)}")
         origins.append(origin)
+        before = waypoint
         yield waypoint
 
 
@@ -162,5 +176,6 @@ def _notes(path: Path, origin: Origin) -> list[str]:
         notes.append(f"the last step was made by magshell {origin.magshell}, this is {__version__}")
     changed = [name for name, value in origin.settings.items() if getattr(path.settings, name, None) != value]
     if changed:
-        notes.append(f"the solver's settings have changed since the last step: {', '.join(changed)}")
+        names = shortened(", ".join(changed))
+        notes.append(f"the solver's settings have changed since the last step: {names}")
     return notes

@@ -1,4 +1,4 @@
-"""Slips that `check` and `run` tell: mirror planes that something breaks, supports everywhere, places between elements."""
+"""Slips that `check` and `run` tell: mirror planes that are broken, supports everywhere, places between elements."""
 
 from __future__ import annotations
 

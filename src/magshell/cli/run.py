@@ -201,9 +201,12 @@ def _reason(stop: BaseException) -> str:
 
 def _is_complete(directory: pathlib.Path) -> bool:
     """Whether a run has written also what comes last."""
+    from magshell.files import read_at_most
+    from magshell.output.summary import MOST_BYTES
+
     try:
-        converged = json.loads((directory / "summary.json").read_text(encoding="utf-8"))["converged"]
-    except (OSError, ValueError, KeyError):
+        converged = json.loads(read_at_most(directory / "summary.json", MOST_BYTES))["converged"]
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return False
     return bool(converged) and all((directory / name).exists() for name in _AT_THE_END)
 

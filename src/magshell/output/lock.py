@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 from magshell.errors import InputError
 from magshell.files import lock, naming
+from magshell.units import shortened
 
 NAME = ".lock"
 
@@ -32,7 +33,9 @@ def alone(directory: pathlib.Path) -> Iterator[None]:
             held = stack.enter_context(open(file, "a+"))
         if not lock(held):
             held.seek(0)
-            raise InputError(f"{directory}: another run writes into it ({held.read().strip() or 'it has just begun'})")
+            raise InputError(
+                f"{directory}: another run writes into it ({shortened(held.read(200).strip()) or 'it has just begun'})"
+            )
         with naming(file):
             held.truncate(0)
             held.write(f"process {os.getpid()} on {socket.gethostname()}\n")

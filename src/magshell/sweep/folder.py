@@ -12,8 +12,8 @@ import tomllib
 from collections.abc import Sequence
 
 from magshell.errors import InputError
-from magshell.files import write_atomically
-from magshell.problem.reading import Source
+from magshell.files import read_at_most, write_atomically
+from magshell.problem.reading import MOST_BYTES, Source
 
 _VERSION = 1
 
@@ -65,8 +65,8 @@ class SweepFolder:
             There is no sweep, or its files are damaged.
         """
         try:
-            definition = tomllib.loads(self.definition.read_text(encoding="utf-8"))
-            text = self.problem.read_text(encoding="utf-8")
+            definition = tomllib.loads(read_at_most(self.definition, MOST_BYTES).decode())
+            text = read_at_most(self.problem, MOST_BYTES).decode()
         except (FileNotFoundError, NotADirectoryError) as error:
             raise InputError(f"{error.filename}: there is no such file, so this is no folder of a sweep") from None
         except OSError as error:

@@ -11,8 +11,8 @@ import itertools
 import math
 import pathlib
 import re
-from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple, TextIO
 
 import numpy as np
 
@@ -20,6 +20,8 @@ from magshell import units
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
 
+LONGEST = 2**20
+"""Characters of a line."""
 SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs"}
 LARGEST = 1e60
 """Of numbers in a table, whatever their unit: products of a few of them are still finite."""
@@ -76,7 +78,7 @@ def read_table(file: pathlib.Path, wanted: Columns, optional: Columns) -> Table:
     """
     try:
         with file.open(encoding="utf-8-sig", newline="") as opened:
-            return _read(file, opened, wanted, optional)
+            return _read(file, _lines(file.name, opened), wanted, optional)
     except UnicodeDecodeError as error:
         raise InputError(f"{file.name}: is not a text file in UTF-8 (byte {error.start})") from None
     except csv.Error as error:
@@ -87,6 +89,16 @@ def read_table(file: pathlib.Path, wanted: Columns, optional: Columns) -> Table:
         raise InputError(unreadable(file, error)) from None
 
 
+def _lines(name: str, opened: TextIO) -> Iterator[str]:
+    """The lines of a file, each of bearable length."""
+    number = 0
+    while line := opened.readline(LONGEST + 1):
+        number += 1
+        if len(line) > LONGEST:
+            raise InputError(f"{name}, line {number}: has more than {LONGEST} characters; a table has short lines")
+        yield line
+
+
 def unreadable(file: pathlib.Path, error: Exception) -> str:
     """Why a file cannot be read."""
     if isinstance(error, FileNotFoundError):
@@ -94,8 +106,7 @@ def unreadable(file: pathlib.Path, error: Exception) -> str:
     return f"{file}: cannot be read: {getattr(error, 'strerror', None) or error}"
 
 
-def _read(file: pathlib.Path, opened: Iterable[str], wanted: Columns, optional: Columns) -> Table:
-    text = iter(opened)
+def _read(file: pathlib.Path, text: Iterator[str], wanted: Columns, optional: Columns) -> Table:
     first = next(((number, line) for number, line in enumerate(text, start=1) if _says_something(line)), None)
     if first is None:
         names = ",".join((*optional.names, *wanted.names))
