@@ -179,9 +179,10 @@ REFUSED = {
 
 
 def reshape(file: Path) -> None:
-    """Take a node away."""
+    """Take a node away, as a version would with another generator of meshes (one without a digest)."""
     with np.load(file) as arrays:
-        np.savez(file, **{**arrays, "u": arrays["u"][1:]})
+        others = {name: values for name, values in arrays.items() if name != "digest"}
+    np.savez(file, **{**others, "u": others["u"][1:]})
 
 
 @pytest.mark.parametrize("fault", REFUSED)

@@ -127,7 +127,7 @@ def test_no_number_that_is_none_gets_in(wrong: float, whole: Path) -> None:
             bad.flat[array.size // 2] = wrong
             changed(file, **{name: bad})
             with np.load(file) as arrays:
-                anew = digest(arrays)
+                anew = digest({other: each for other, each in arrays.items() if other != "cpu_seconds"})
             changed(file, **{name: bad, "digest": anew})
             words = rf"step-0002\.npz: is damaged or was changed: .*{name}"
             with pytest.raises(InputError, match=words):
