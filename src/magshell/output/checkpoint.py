@@ -218,10 +218,10 @@ def _check(arrays: Mapping[str, np.ndarray]) -> None:
             raise Unfit(f"{name} is of the type {values.dtype}")
         if values.dtype.kind == "f" and not np.isfinite(values).all():
             raise Unfit(f"{name} is not finite")
-        if values.dtype.kind == "f" and np.abs(values).max(initial=0.0) > LARGEST:
-            raise Unfit(f"{name} has the number {np.abs(values).max():g}")
         if values.dtype.kind == "f" and values.dtype != np.float64:
             raise Unfit(f"{name} is of the type {values.dtype}, not float64")
+        if values.dtype.kind == "f" and np.abs(values).max(initial=0.0) > LARGEST:
+            raise Unfit(f"{name} has the number {np.abs(values).max():g}")
         if values.dtype.kind == "U" and values.nbytes > MOST_TEXT:
             raise Unfit(f"{name} is a text of {values.nbytes} bytes")
     if "digest" in arrays and str(arrays["digest"]) != _digest(arrays):

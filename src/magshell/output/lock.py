@@ -30,7 +30,7 @@ def alone(directory: pathlib.Path) -> Iterator[None]:
     file = directory / NAME
     with contextlib.ExitStack() as stack:
         with naming(file):
-            held = stack.enter_context(open(file, "a+"))
+            held = stack.enter_context(open(file, "a+", encoding="utf-8", errors="replace"))
         if not lock(held):
             held.seek(0)
             raise InputError(
