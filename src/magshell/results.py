@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from magshell import __version__, problem
 from magshell.errors import InputError
-from magshell.files import naming, write_atomically
+from magshell.files import naming, refuse_somebodys, refuse_to_replace, write_atomically
 from magshell.output import checkpoint, step_checks
 from magshell.output.checkpoint import CheckpointWriter, Origin
 from magshell.output.critical import CriticalWriter
@@ -28,6 +28,10 @@ from magshell.solver.waypoint import Waypoint, path_through
 from magshell.units import shortened
 
 PROBLEM = "problem.toml"
+WRITTEN = (
+    "history.csv", "summary.json", "shell.pvd", "critical.csv", "curve.png", "shape.png", "steps/step-*.vtu",
+    "critical/point-*.vtu", f"{checkpoint.FOLDER}/step-*.npz",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,27 +112,49 @@ def begun(directory: str | os.PathLike[str]) -> bool:
     return bool(checkpoint.step_files(directory))
 
 
+def is_one(directory: pathlib.Path) -> bool:
+    """Whether a folder was made by a run."""
+    return (directory / PROBLEM).is_file() and (directory / checkpoint.FOLDER).is_dir()
+
+
+def require_free(source: Problem, directory: pathlib.Path) -> None:
+    """Refuse a folder in which a run would replace or remove somebody's own files.
+
+    Raises
+    ------
+    InputError
+        Names them.
+    """
+    if is_one(directory):
+        return
+    refuse_somebodys(directory, False, WRITTEN)
+    text, inputs = copies.alone(source)
+    others = [
+        name
+        for name, content in {PROBLEM: text.encode(), **inputs}.items()
+        if (directory / name).exists() and (directory / name).read_bytes() != content
+    ]
+    refuse_to_replace(directory, others)
+
+
 def make(source: Problem, directory: pathlib.Path) -> None:
     """Make a folder (which exists) ready for a run: steps of an earlier one are removed, the problem is copied into it.
 
     Raises
     ------
     InputError
-        The folder holds somebody's own problem file of that name.
+        The folder holds somebody's own files with the names of those that a run writes.
     OSError
         A file of the problem has gone, or the disk refuses; the message names the file.
     """
-    copy = directory / PROBLEM
+    require_free(source, directory)
     text, inputs = copies.alone(source)
-    content = text.encode()
-    if copy.exists() and copy.read_bytes() != content and not (directory / checkpoint.FOLDER).is_dir():
-        raise InputError(f"--out {directory}: the {PROBLEM} there is not of an earlier run; name another folder")
     with naming(directory / checkpoint.FOLDER):
         (directory / checkpoint.FOLDER).mkdir(exist_ok=True)
     checkpoint.forget(directory)
     for name, own in inputs.items():
         write_atomically(directory / name, own)
-    write_atomically(copy, content)
+    write_atomically(directory / PROBLEM, text.encode())
 
 
 def writers(source: Problem, directory: pathlib.Path) -> list[Observer]:

@@ -90,8 +90,11 @@ def test_help(encoding: str, monkeypatch: pytest.MonkeyPatch) -> None:
         assert "examples:" in text
 
 
-@pytest.mark.parametrize("encoding", ENCODINGS)
-@pytest.mark.parametrize("use", USES)
+SOLVING = {"run", "sweep", "buckling", "plot", "show", "view"}
+MEETINGS = [(use, encoding) for use in USES for encoding in (["ascii", "cp932"] if use in SOLVING else ENCODINGS)]
+
+
+@pytest.mark.parametrize(("use", "encoding"), MEETINGS)
 def test_every_command(use: str, encoding: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(folder)
     monkeypatch.setattr("magshell.output.pictures.draw_pictures", lambda path, directory: [])

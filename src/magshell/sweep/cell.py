@@ -77,7 +77,8 @@ def _solve(source: Source, directory: pathlib.Path, stop: Observer) -> None:
     problem = build(check(parse(source.text, source.name), source.name), *source)
     directory.mkdir(parents=True, exist_ok=True)
     with alone(directory):
-        remove_temporaries(directory)
+        if results.is_one(directory):
+            remove_temporaries(directory)
         try:
             earlier = results.read(directory).path if results.begun(directory) else None
         except InputError:
