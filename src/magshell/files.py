@@ -7,9 +7,88 @@ import io
 import os
 import pathlib
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import IO
+
+from magshell.errors import InputError
+
+
+def with_suffix(file: str | os.PathLike[str], *suffixes: str) -> pathlib.Path:
+    """The path of a file to write, whose name must say the format that it gets.
+
+    Raises
+    ------
+    InputError
+        It ends in none of the suffixes; the message names one that does.
+    """
+    path = pathlib.Path(file)
+    if path.suffix.lower() not in suffixes:
+        raise InputError(
+            f"{path}: {' or '.join(suffixes)} is written here, nothing else; name it {path.stem + suffixes[0]}"
+        )
+    return path
+
+
+def refuse_somebodys(directory: pathlib.Path, made: bool, patterns: Iterable[str]) -> None:
+    """Refuse to write into a folder where something of somebody's own would be replaced or removed.
+
+    Parameters
+    ----------
+    directory : pathlib.Path
+    made : bool
+        Whether the folder as a whole was made by an earlier run of the command: then nothing in it is.
+    patterns : iterable of str
+        What the command writes there.
+
+    Raises
+    ------
+    InputError
+        Names the files.
+    """
+    if made:
+        return
+    found = {str(file.relative_to(directory)) for pattern in patterns for file in directory.glob(pattern)}
+    refuse_to_replace(directory, sorted(found))
+
+
+def refuse_to_replace(directory: pathlib.Path, names: Sequence[str]) -> None:
+    """Refuse a folder in which these files, if there are any, are somebody's own.
+
+    Raises
+    ------
+    InputError
+        Names them.
+    """
+    if names:
+        listed = ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
+        raise InputError(f"{directory}: would lose {listed}, not of an earlier run; name another folder")
+
+
+def first_line(file: pathlib.Path) -> str:
+    """Of a text file, up to 1000 bytes; empty where there is none."""
+    try:
+        with open(file, "rb") as opened:
+            return opened.readline(1000).decode("utf-8", "replace")
+    except OSError:
+        return ""
+
+
+def read_at_most(path: pathlib.Path, most: int) -> bytes:
+    """The bytes of a file from anybody.
+
+    Raises
+    ------
+    OSError
+        It cannot be read.
+    ValueError
+        It has more than `most`.
+    """
+    with open(path, "rb") as file:
+        content = file.read(most + 1)
+    if len(content) > most:
+        raise ValueError(f"it has more than {most} bytes")
+    return content
 
 
 @contextmanager

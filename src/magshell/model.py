@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from magshell import symmetry
 from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError, NothingLoads, suggest
 from magshell.history import amplitudes
@@ -220,6 +221,8 @@ class Model:
         check_supported(mesh, self.normals, self.constraints)
         self._check_the_micro_rotation_matters()
         self._check_something_loads()
+        for fault in symmetry.broken(self):
+            symmetry.logger.warning("%s", fault)
 
     def __repr__(self) -> str:
         parts = (self.shell, self.field, self.coupling, *self.loads, *self.supports)
@@ -308,8 +311,7 @@ class Model:
         normals = nodal_normals(mesh.points, mesh.elements)
         for support in self.supports:
             if isinstance(support, SymmetryPlane):
-                nodes, plane = mesh.nodes_of(support.group), np.array(support.normal, dtype=float)
-                plane /= np.linalg.norm(plane)
+                nodes, plane = mesh.nodes_of(support.group), support.unit_normal
                 inside = normals[nodes] - np.outer(normals[nodes] @ plane, plane)
                 length = np.linalg.norm(inside, axis=1)
                 meets = length > TOUCHING

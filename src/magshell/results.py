@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 from magshell import __version__, problem
 from magshell.errors import InputError
-from magshell.files import naming, write_atomically
-from magshell.output import checkpoint
+from magshell.files import naming, refuse_somebodys, refuse_to_replace, write_atomically
+from magshell.output import checkpoint, step_checks
 from magshell.output.checkpoint import CheckpointWriter, Origin
 from magshell.output.critical import CriticalWriter
 from magshell.output.history import HistoryWriter
@@ -23,9 +23,15 @@ from magshell.output.vtu import VtuWriter
 from magshell.problem import copies
 from magshell.problem.building import Problem
 from magshell.solver import Observer, Path
+from magshell.solver.newton import StepFailure
 from magshell.solver.waypoint import Waypoint, path_through
+from magshell.units import shortened
 
 PROBLEM = "problem.toml"
+WRITTEN = (
+    "history.csv", "summary.json", "shell.pvd", "critical.csv", "curve.png", "shape.png", "steps/step-*.vtu",
+    "critical/point-*.vtu", f"{checkpoint.FOLDER}/step-*.npz",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +81,14 @@ def read(directory: str | os.PathLike[str]) -> Results:
         raise InputError(f"{folder}: no step has converged there yet; `magshell run --resume` begins it")
     found = problem.load(folder / PROBLEM)
     origins: list[Origin] = []
-    path = path_through(found.model, found.settings, _waypoints(found, files, origins))
+    try:
+        path = path_through(found.model, found.settings, _waypoints(found, files, origins))
+    except StepFailure as failure:
+        raise InputError(f"{folder / checkpoint.FOLDER}: its steps are no path: {failure}; run it anew") from None
+    fault = step_checks.fault_of_path(path)
+    if fault is not None:
+        number, what = fault
+        raise InputError(f"{files[number]}: is damaged or was changed: {what}. {checkpoint.remedy(number)}")
     return Results(found, path, _notes(path, origins[-1]))
 
 
@@ -99,27 +112,49 @@ def begun(directory: str | os.PathLike[str]) -> bool:
     return bool(checkpoint.step_files(directory))
 
 
+def is_one(directory: pathlib.Path) -> bool:
+    """Whether a folder was made by a run."""
+    return (directory / PROBLEM).is_file() and (directory / checkpoint.FOLDER).is_dir()
+
+
+def require_free(source: Problem, directory: pathlib.Path) -> None:
+    """Refuse a folder in which a run would replace or remove somebody's own files.
+
+    Raises
+    ------
+    InputError
+        Names them.
+    """
+    if is_one(directory):
+        return
+    refuse_somebodys(directory, False, WRITTEN)
+    text, inputs = copies.alone(source)
+    others = [
+        name
+        for name, content in {PROBLEM: text.encode(), **inputs}.items()
+        if (directory / name).exists() and (directory / name).read_bytes() != content
+    ]
+    refuse_to_replace(directory, others)
+
+
 def make(source: Problem, directory: pathlib.Path) -> None:
     """Make a folder (which exists) ready for a run: steps of an earlier one are removed, the problem is copied into it.
 
     Raises
     ------
     InputError
-        The folder holds somebody's own problem file of that name.
+        The folder holds somebody's own files with the names of those that a run writes.
     OSError
         A file of the problem has gone, or the disk refuses; the message names the file.
     """
-    copy = directory / PROBLEM
+    require_free(source, directory)
     text, inputs = copies.alone(source)
-    content = text.encode()
-    if copy.exists() and copy.read_bytes() != content and not (directory / checkpoint.FOLDER).is_dir():
-        raise InputError(f"--out {directory}: the {PROBLEM} there is not of an earlier run; name another folder")
     with naming(directory / checkpoint.FOLDER):
         (directory / checkpoint.FOLDER).mkdir(exist_ok=True)
     checkpoint.forget(directory)
     for name, own in inputs.items():
         write_atomically(directory / name, own)
-    write_atomically(copy, content)
+    write_atomically(directory / PROBLEM, text.encode())
 
 
 def writers(source: Problem, directory: pathlib.Path) -> list[Observer]:
@@ -138,8 +173,9 @@ def _waypoints(source: Problem, files: Iterable[pathlib.Path], origins: list[Ori
     own = copies.digest(source)
     mesh, modes = source.model.shell.mesh, source.model.shell.element.vectors
     shapes = (len(mesh.points), 3), (len(mesh.elements), modes, 3)
+    most, before = step_checks.most_bytes(source.model), None
     for number, file in enumerate(files):
-        waypoint, origin = checkpoint.read_step(file)
+        waypoint, origin = checkpoint.read_step(file, most)
         if waypoint.step.number != number:
             raise InputError(f"{file.with_name(checkpoint.step_name(number))}: is missing. {checkpoint.remedy(number)}")
         if origin.problem != own:
@@ -152,7 +188,11 @@ def _waypoints(source: Problem, files: Iterable[pathlib.Path], origins: list[Ori
                 f"{file}: is of another mesh than {PROBLEM} makes now (magshell {origin.magshell} made the step, this "
                 f"is {__version__}); run it anew with --out"
             )
+        fault = step_checks.fault_of(waypoint, before, source.model)
+        if fault is not None:
+            raise InputError(f"{file}: is damaged or was changed: {fault}. {checkpoint.remedy(number)}")
         origins.append(origin)
+        before = waypoint
         yield waypoint
 
 
@@ -162,5 +202,6 @@ def _notes(path: Path, origin: Origin) -> list[str]:
         notes.append(f"the last step was made by magshell {origin.magshell}, this is {__version__}")
     changed = [name for name, value in origin.settings.items() if getattr(path.settings, name, None) != value]
     if changed:
-        notes.append(f"the solver's settings have changed since the last step: {', '.join(changed)}")
+        names = shortened(", ".join(changed))
+        notes.append(f"the solver's settings have changed since the last step: {names}")
     return notes

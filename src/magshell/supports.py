@@ -86,14 +86,25 @@ class SymmetryPlane:
     group: str
     normal: ArrayLike
 
-    def conditions(self) -> Iterator[Condition]:
-        """Four per node."""
+    @property
+    def unit_normal(self) -> FloatArray:
+        """The normal (3,) of length 1.
+
+        Raises
+        ------
+        InputError
+            It is something else than three finite numbers, not all zero.
+        """
         normal = _numbers(self.group, "normal", self.normal)
         if normal.shape != (3,) or not np.all(np.isfinite(normal)) or not np.any(normal):
             raise InputError(
                 f"support on '{self.group}': normal is {self.normal!r}; it needs 3 components, not all zero"
             )
-        normal = normal / np.linalg.norm(normal)
+        return normal / np.linalg.norm(normal)
+
+    def conditions(self) -> Iterator[Condition]:
+        """Four per node."""
+        normal = self.unit_normal
         for field in ("u", "w"):
             yield Condition(self.group, field, normal, 0.0, optional=True)
         helper = AXES[np.argmin(np.abs(normal))]

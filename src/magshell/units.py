@@ -40,6 +40,16 @@ class Dimension:
     def allowed(self) -> str:
         return ", ".join(self.units)
 
+    def value(self, unit: str) -> float | None:
+        """Value of a unit in SI; None: there is no such unit."""
+        found = self.units.get(spelled(unit))
+        return None if found is None else float(found)
+
+
+def spelled(unit: str) -> str:
+    """A unit as the tables here spell it: its micro sign (U+00B5) may be written as a Greek mu (U+03BC)."""
+    return unit.replace("\u03bc", "\u00b5")
+
 
 def _dimension(name: str, units: dict[str, str], display: dict[str, float]) -> Dimension:
     return Dimension(name, {unit: Decimal(value) for unit, value in units.items()}, tuple(display.items()))
@@ -177,6 +187,7 @@ def _split(value: object, dimension: Dimension) -> tuple[Decimal, str]:
     number, unit = match.group(1), " ".join(match.group(2).split())
     if float(number) == 0.0:
         number = "0"
+    unit = spelled(unit)
     return Decimal(number), "1" + unit if unit.startswith("/") else unit
 
 

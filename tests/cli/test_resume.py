@@ -179,9 +179,10 @@ REFUSED = {
 
 
 def reshape(file: Path) -> None:
-    """Take a node away."""
+    """Take a node away, as a version would with another generator of meshes (one without a digest)."""
     with np.load(file) as arrays:
-        np.savez(file, **{**arrays, "u": arrays["u"][1:]})
+        others = {name: values for name, values in arrays.items() if name != "digest"}
+    np.savez(file, **{**others, "u": others["u"][1:]})
 
 
 @pytest.mark.parametrize("fault", REFUSED)
@@ -348,7 +349,7 @@ def test_somebodys_own_problem_is_not_overwritten(
     own = tmp_path / "problem.toml"
     own.write_text("# mine\n" + STRIP)
     assert main(["run", strip, "--out", str(tmp_path)]) == 2
-    assert_line(capsys.readouterr().err, r"the problem\.toml there is not of an earlier run")
+    assert_line(capsys.readouterr().err, r"would lose problem\.toml, not of an earlier run")
     assert own.read_text() == "# mine\n" + STRIP
     assert main(["run", str(own), "--out", str(tmp_path)]) == 0
     assert own.read_text() == "# mine\n" + STRIP

@@ -26,6 +26,7 @@ MEASURED = "# a comment\nx1,x2,x3,b1,b2,b3\n" + "".join(
     f"{1e3 * x:g},{1e3 * y:g},{1e3 * z:g},100,-0.5,{number}e-1\n" for number, (x, y, z) in enumerate(CENTRES)
 )
 BY_ELEMENT = 'b3,name,b1,b2\n1,"a, b",2,3\n4,é,5,6\n7,,8,9\n10,x,11,12\n'
+SPREADSHEET = MEASURED.replace(",", ";").replace(".", ",").replace("x1;x2", "X1 [mm];X2/mm")
 DISPLACED = "x1,x2,x3,u1,u2,u3\n" + "".join(f"{x!r},{y!r},{z!r},0,0,{x!r}\n" for x, y, z in PLATE.points.tolist())
 
 
@@ -59,7 +60,7 @@ def refused_or_vectors(content: bytes, file: Path, length_unit: str = "mm") -> N
 
 
 @share(0.05)
-@given(content=st.sampled_from([MEASURED.encode(), BY_ELEMENT.encode()]).flatmap(damaged))
+@given(content=st.sampled_from([MEASURED.encode(), BY_ELEMENT.encode(), SPREADSHEET.encode()]).flatmap(damaged))
 def test_measured(content: bytes, folder: Path) -> None:
     refused_or_vectors(content, folder / "measured.csv")
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import io
+import zipfile
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from faults.limits import bounded
 
 from magshell.errors import InputError
 from magshell.output import checkpoint
@@ -115,9 +117,9 @@ def test_flipped_bits(file: Path) -> None:
 
 
 def other(**changes: object) -> bytes:
-    """A file with some arrays changed; None: left out."""
+    """A file without digest, as magshell 0.1.0 wrote it, with some arrays changed; None: left out."""
     with np.load(io.BytesIO(content(waypoint(), ORIGIN))) as arrays:
-        all_of_them = {**arrays, **changes}
+        all_of_them = {**arrays, "digest": None, **changes}
     made = io.BytesIO()
     np.savez(made, **{name: values for name, values in all_of_them.items() if values is not None})
     return made.getvalue()
@@ -133,12 +135,69 @@ def other(**changes: object) -> bytes:
         (other(u=None), r"is damaged \(KeyError: 'u'\)"),
         (other(settings="{"), r"is damaged"),
         (other(number=8), r"holds step 8; it was renamed"),
+        (other(settings="[1]"), r"is damaged or was changed: settings is not a table"),
+        (other(flux_density=np.array([0.0, np.nan, 1.0])), r"is damaged or was changed: flux_density is not finite"),
+        (other(load_factor=np.inf), r"is damaged or was changed: load_factor is not finite"),
+        (other(phi=np.zeros(NODES, np.float32)), r"is damaged or was changed: phi is of the type float32"),
+        (other(phi=np.zeros(NODES, complex)), r"is damaged or was changed: phi is of the type complex128"),
+        (other(magshell="1" * 20_000), r"is damaged or was changed: magshell is a text of 80000 bytes"),
+        (other(digest="0" * 64), r"is damaged or was changed: its numbers are not those that were written"),
     ],
 )
 def test_other_files(file: Path, content: bytes, message: str) -> None:
     file.write_bytes(content)
     with pytest.raises(InputError, match=rf"step-0007\.npz: {message}"):
         read_step(file)
+
+
+def test_a_file_without_digest_is_read(file: Path) -> None:
+    """As magshell 0.1.0 wrote it."""
+    file.write_bytes(other())
+    assert same(read_step(file)[0], waypoint())
+
+
+def test_changed_numbers_are_noticed(file: Path) -> None:
+    """Whoever loads the arrays, changes the last bit of one of them and saves them again."""
+    with np.load(io.BytesIO(content(waypoint(), ORIGIN))) as arrays:
+        all_of_them = dict(arrays)
+    for name, values in all_of_them.items():
+        if name in ("digest", "cpu_seconds") or values.dtype.kind != "f":
+            continue
+        changed = values.copy()
+        changed.flat[-1] = np.nextafter(changed.flat[-1], 1e9)
+        with file.open("wb") as opened:
+            np.savez(opened, **{**all_of_them, name: changed})
+        with pytest.raises(InputError, match="its numbers are not those that were written"):
+            read_step(file)
+
+
+def zeros(count: int) -> bytes:
+    """An array file of zeros."""
+    made = io.BytesIO()
+    np.save(made, np.zeros(count))
+    return made.getvalue()
+
+
+def test_nothing_is_unpacked_that_is_larger_than_its_file(file: Path) -> None:
+    """Zip bombs: compressed, entries that overlap, headers that claim more than there is."""
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("u.npy", zeros(10_000_000))
+    with bounded(), pytest.raises(InputError, match="its arrays are compressed"):
+        read_step(file)
+    with zipfile.ZipFile(file, "w") as archive:
+        archive.writestr("u.npy", zeros(1_000_000))
+        entry = archive.infolist()[0]
+        archive.filelist += [entry] * 5000
+    with bounded(), pytest.raises(InputError, match="claim to be larger than the file"):
+        read_step(file)
+    claimed = zeros(10).replace(b"(10,)", b"(10000000000,)").replace(b"          \n", b"\n", 1)
+    with zipfile.ZipFile(file, "w") as archive:
+        archive.writestr("u.npy", claimed)
+    with bounded(), pytest.raises(InputError, match="is damaged"):
+        read_step(file)
+    file.write_bytes(content(waypoint(), ORIGIN) + bytes(10_000_000))
+    with pytest.raises(InputError, match="where at most 1000000 can be meant"):
+        read_step(file, 1_000_000)
 
 
 def test_a_pickle_is_never_opened(file: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import logging
 import os
 import sys
 from collections.abc import Sequence
@@ -10,6 +11,7 @@ from importlib.metadata import version
 
 from magshell.cli import buckling, check, examples, mesh, plot, reproduce, run, show, sweep, view
 from magshell.cli.console import complain
+from magshell.cli.letters import write_readably
 from magshell.cli.status import BAD_INPUT, INTERRUPTED, NOT_SOLVED
 from magshell.errors import InputError
 
@@ -57,7 +59,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     int
         0 solved, 1 not solved, 2 bad input, 130 interrupted.
     """
+    write_readably()
     given = _parser().parse_args(arguments)
+    logging.getLogger("magshell.symmetry").addHandler(logging.NullHandler())  # commands say what is broken themselves
     try:
         return int(given.command(given))
     except InputError as error:

@@ -32,7 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """Estimate, and write the modes."""
-    from magshell.output.buckling import write_buckling
+    from magshell.output.buckling import require_free, write_buckling
     from magshell.problem import load
     from magshell.problem.report import describe
     from magshell.progress import ProgressDisplay
@@ -43,6 +43,7 @@ def run(given: argparse.Namespace) -> int:
     say(out, problem.title)
     say_doubts(out, describe(problem))
     directory = made(pathlib.Path(given.out))
+    require_free(directory)
     progress = ProgressDisplay(out)
     try:
         with progress:

@@ -41,11 +41,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """Draw."""
+    from magshell.files import refuse_to_replace
     from magshell.output.animation import animate, draw_steps, require_writer
     from magshell.output.curve import draw_curve
     from magshell.output.registry import find
     from magshell.output.rendering import RenderingUnavailable
-    from magshell.results import read
+    from magshell.output.style import is_ours
+    from magshell.results import is_one, read
 
     find(given.color)
     if given.animate:
@@ -53,6 +55,10 @@ def run(given: argparse.Namespace) -> int:
     path = read(given.directory).path
     steps = _steps(path, given.steps)
     directory = made(pathlib.Path(given.out or given.directory))
+    if not is_one(directory):
+        names = ["curve.png", *(f"shape-{step.number:04d}.png" for step in steps)]
+        own = [name for name in names if (directory / name).is_file() and not is_ours(directory / name)]
+        refuse_to_replace(directory, own)
     out = console()
     draw_curve(path, directory / "curve.png")
     say(out, f"picture: {directory / 'curve.png'}")

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from magshell.problem.building import Problem
     from magshell.solver import Observer, Path
 
+# Displacements over the size of the body that are round-off.
+STILL = 1e-12
 _AT_THE_END = ("summary.json", "curve.png", "shape.png")
 
 ABOUT = "solve a problem and write the results"
@@ -59,8 +61,9 @@ def run(given: argparse.Namespace) -> int:
     """Solve, and write the results."""
     from magshell.files import remove_temporaries
     from magshell.output.lock import alone
-    from magshell.results import require_no_sweep
+    from magshell.results import is_one, require_free, require_no_sweep
 
+    problem = None
     if given.resume is not None:
         if given.problem is not None or given.set:
             raise InputError(
@@ -84,9 +87,12 @@ def run(given: argparse.Namespace) -> int:
         problem = load(given.problem, read_changes(given.set))
         directory = made(pathlib.Path(given.out))
     require_no_sweep(directory)
+    if problem is not None:
+        require_free(problem, directory)
     with alone(directory), _terminating():
-        remove_temporaries(directory)
-        return _new(problem, directory) if given.resume is None else _resumed(directory)
+        if is_one(directory):
+            remove_temporaries(directory)
+        return _resumed(directory) if problem is None else _new(problem, directory)
 
 
 def _new(problem: Problem, directory: pathlib.Path) -> int:
@@ -162,6 +168,7 @@ def _follow(
         noise = 1e-9 * abs(u).max()
         say(out, f"{name}: u = ({', '.join(show(x if abs(x) > noise else 0.0, LENGTH) for x in u[-1])})")
     _say_unstable(out, path)
+    _say_still(out, path)
     for picture in draw_pictures(path, directory):
         say(out, f"picture: {picture}" if isinstance(picture, pathlib.Path) else picture)
     say(out, f"results: {directory} (history.csv, summary.json; shell.pvd opens in ParaView)")
@@ -201,9 +208,12 @@ def _reason(stop: BaseException) -> str:
 
 def _is_complete(directory: pathlib.Path) -> bool:
     """Whether a run has written also what comes last."""
+    from magshell.files import read_at_most
+    from magshell.output.summary import MOST_BYTES
+
     try:
-        converged = json.loads((directory / "summary.json").read_text(encoding="utf-8"))["converged"]
-    except (OSError, ValueError, KeyError):
+        converged = json.loads(read_at_most(directory / "summary.json", MOST_BYTES))["converged"]
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return False
     return bool(converged) and all((directory / name).exists() for name in _AT_THE_END)
 
@@ -217,6 +227,17 @@ def _forget_earlier_run(out: Console, directory: pathlib.Path) -> None:
         file.unlink()
     if earlier or begun(directory):
         say(out, f"the results of an earlier run in {directory} are replaced", style="yellow")
+
+
+def _say_still(out: Console, path: Path) -> None:
+    """That a path to its end has moved nothing, if so."""
+    size = path.model.shell.mesh.size
+    largest = max(float(abs(step.state.u).max()) for step in path.steps)
+    if path.converged and largest <= STILL * size:
+        text = f"nothing moved: the largest displacement of all steps is {show(largest, LENGTH)}"
+        text += f", {largest / size:.1g} of the body" if largest else ""
+        text += ". Check the supports, the units, and whether field or loads act where something can give way"
+        say(out, f"warning: {text}", style="yellow")
 
 
 def _say_unstable(out: Console, path: Path) -> None:

@@ -33,6 +33,7 @@ def run(given: argparse.Namespace) -> int:
     """Draw."""
     from magshell.output.rendering import RenderingUnavailable
     from magshell.output.setup import draw_setup
+    from magshell.output.style import is_ours
     from magshell.problem import load
     from magshell.problem.report import describe
 
@@ -41,6 +42,10 @@ def run(given: argparse.Namespace) -> int:
     say_doubts(out, describe(problem))
     ending = "template" if given.template else "show"
     file = _picture(given.out or f"{pathlib.Path(problem.source).stem}-{ending}.png")
+    if given.out is None and file.is_file() and not is_ours(file):
+        raise InputError(
+            f"{file}: exists already and was not made by magshell; say --out {file} to replace it, or name another"
+        )
     try:
         with out.status("drawing"):
             draw_setup(problem.model, file, problem.title, given.template)

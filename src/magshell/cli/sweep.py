@@ -48,7 +48,7 @@ def run(given: argparse.Namespace) -> int:
     from magshell.sweep.display import Display
     from magshell.sweep.executors import DaskWorkers, LocalWorkers
     from magshell.sweep.folder import SweepFolder
-    from magshell.sweep.grid import grid
+    from magshell.sweep.grid import doubts, grid
     from magshell.sweep.picture import draw_sweep
     from magshell.sweep.sweep import sweep
 
@@ -61,6 +61,8 @@ def run(given: argparse.Namespace) -> int:
     display = Display(out)
     with display:
         cells = grid(source, settings, display.checked)
+        for doubt in doubts(cells):
+            say(out, f"warning: {doubt}", style="yellow")
         made(folder.path)
         folder.begin(source, texts)
         workers = DaskWorkers(given.dask, folder.path) if given.dask else LocalWorkers(given.workers or cores())

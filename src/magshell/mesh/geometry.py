@@ -43,6 +43,13 @@ def diagonal_normals(x: FloatArray) -> FloatArray:
     return 0.5 * np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])
 
 
+def centres(points: FloatArray, elements: IntArray) -> FloatArray:
+    """Points (elements, 3) of the surface in the middle of the parent square, m."""
+    x = points[elements]
+    result: FloatArray = 0.5 * x[:, 4:].sum(axis=1) - 0.25 * x[:, :4].sum(axis=1)
+    return result
+
+
 def unit(vectors: FloatArray) -> FloatArray:
     """Vectors divided by their length; a zero vector stays zero."""
     length = np.linalg.norm(vectors, axis=-1, keepdims=True)

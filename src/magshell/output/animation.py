@@ -23,7 +23,7 @@ from magshell.output.labels import bar_title
 from magshell.output.registry import find
 from magshell.output.scene import Camera, best_axes, darkroom, deformed, field_arrow, fit, lettered
 from magshell.output.shape import INCHES, SCENE, colour_bar, colour_scale, shown_values, triad
-from magshell.output.style import ACCENT, DPI, INK
+from magshell.output.style import ACCENT, DPI, INK, said
 from magshell.output.tessellation import Tessellation
 
 if TYPE_CHECKING:
@@ -146,7 +146,7 @@ def draw_steps(
     with film(path, steps, color) as picture:
         for number, step in enumerate(steps, start=1):
             content = io.BytesIO()
-            picture(step).save(content, format="png", optimize=True)
+            picture(step).save(content, format="png", optimize=True, pnginfo=said())
             files.append(pathlib.Path(directory) / f"shape-{step.number:04d}.png")
             write_atomically(files[-1], content.getvalue())
             advance(number / len(steps))

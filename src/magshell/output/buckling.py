@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from magshell.files import csv_line, write_atomically
+from magshell.files import csv_line, first_line, refuse_somebodys, write_atomically
 from magshell.output.critical import write_mode
 from magshell.output.rendering import RenderingUnavailable
 from magshell.output.shape import draw_shape
@@ -18,9 +18,23 @@ from magshell.solver.path import Step
 if TYPE_CHECKING:
     from magshell.solver.buckling import Buckling, BucklingMode
 
+TABLE = "buckling.csv"
 HEADING = ("number", "load_factor", "B1", "B2", "B3", "mode", "strain", "rotation")
 # Largest displacement of a mode in its picture, in sizes of the body.
 SHOWN = 0.15
+
+
+def require_free(directory: str | os.PathLike[str]) -> None:
+    """Refuse a folder in which somebody's own files would be replaced or removed.
+
+    Raises
+    ------
+    InputError
+        Names them.
+    """
+    folder = pathlib.Path(directory)
+    made = first_line(folder / TABLE) == csv_line(HEADING)
+    refuse_somebodys(folder, made, (TABLE, "buckling/mode-[0-9][0-9]*.*"))
 
 
 def write_buckling(buckling: Buckling, directory: str | os.PathLike[str]) -> list[pathlib.Path | str]:
@@ -39,9 +53,12 @@ def write_buckling(buckling: Buckling, directory: str | os.PathLike[str]) -> lis
 
     Raises
     ------
+    InputError
+        The folder holds somebody's own files with the names of these.
     OSError
         The disk refuses; the message names the file.
     """
+    require_free(directory)
     folder = pathlib.Path(directory)
     for old in (folder / "buckling").glob("mode-[0-9][0-9]*.*"):
         old.unlink(missing_ok=True)
@@ -55,7 +72,7 @@ def write_buckling(buckling: Buckling, directory: str | os.PathLike[str]) -> lis
             pictures.append(_draw(buckling, mode, (folder / name).with_suffix(".png")))
         except RenderingUnavailable as unavailable:
             pictures.append(str(unavailable))
-    write_atomically(folder / "buckling.csv", "".join(rows).encode())
+    write_atomically(folder / TABLE, "".join(rows).encode())
     return pictures
 
 

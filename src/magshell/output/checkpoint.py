@@ -11,6 +11,7 @@ import json
 import os
 import pathlib
 import re
+import struct
 import zipfile
 import zlib
 from collections.abc import Mapping
@@ -23,6 +24,7 @@ import numpy as np
 import magshell
 from magshell.errors import InputError
 from magshell.files import naming, write_atomically
+from magshell.output.archive import Unfit, digest, read_arrays
 from magshell.shell.state import State
 from magshell.solver.balance import Balance
 from magshell.solver.critical import CriticalPoint
@@ -39,9 +41,13 @@ if TYPE_CHECKING:
 FORMAT, VERSION = "magshell checkpoint", 1
 FOLDER = "checkpoint"
 UNKNOWN = -1
+# Of any number: products of a few of them are still finite.
+LARGEST = 1e60
+MOST_BYTES, MOST_TEXT = 16 * 2**30, 2**16
 # What reading a torn zip file may raise.
 DAMAGES = (
     zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, SyntaxError, TokenError, MemoryError,
+    OverflowError, RecursionError, struct.error,
 )  # fmt: skip
 
 
@@ -109,26 +115,36 @@ def forget(directory: str | os.PathLike[str]) -> None:
             file.unlink()
 
 
-def read_step(file: pathlib.Path) -> tuple[Waypoint, Origin]:
+def read_step(file: pathlib.Path, most: int = MOST_BYTES) -> tuple[Waypoint, Origin]:
     """A converged step and what it was made with.
+
+    Parameters
+    ----------
+    file : pathlib.Path
+    most : int
+        Bytes that it may have.
 
     Raises
     ------
     InputError
-        The file is damaged, of a newer version or no checkpoint; the message says what to do.
+        The file is damaged, larger, of a newer version or no checkpoint, has numbers that are not finite or other ones
+        than were written; the message says what to do.
     """
     number = _number(file) or 0
     try:
-        arrays = _arrays(file)
+        arrays = read_arrays(file, most)
         if str(arrays.get("format")) != FORMAT:
             raise InputError(f"{file}: is not a checkpoint of magshell. {remedy(number)}")
         if (version := int(arrays["version"])) > VERSION:
             raise InputError(
                 f"{file}: has version {version} of the format, this magshell reads up to {VERSION}; update it"
             )
+        _check(arrays)
         waypoint, origin = _waypoint(arrays), _origin(arrays)
     except InputError:
         raise
+    except Unfit as unfit:
+        raise InputError(f"{file}: is damaged or was changed: {unfit}. {remedy(number)}") from None
     except OSError as error:
         raise InputError(f"{file}: cannot be read: {error.strerror or error}") from None
     except (*DAMAGES, KeyError, TypeError, ValueError) as error:
@@ -184,18 +200,32 @@ def content(waypoint: Waypoint, origin: Origin) -> bytes:
         own = point._asdict()
         own |= own.pop("state")._asdict() | {"negative_pivots": [_counted(one) for one in point.negative_pivots]}
         arrays |= {f"critical{number}_{name}": value for name, value in own.items()}
+    arrays = {name: np.asarray(values) for name, values in arrays.items()}
     file = io.BytesIO()
-    np.savez(file, **arrays)
+    np.savez(file, **arrays, digest=_digest(arrays))
     return file.getvalue()
 
 
-def _arrays(file: pathlib.Path) -> dict[str, np.ndarray]:
-    """The arrays of a file; each is read to its end, where its checksum is compared."""
-    with zipfile.ZipFile(file) as archive:
-        return {
-            name.removesuffix(".npy"): np.lib.format.read_array(io.BytesIO(archive.read(name)), allow_pickle=False)
-            for name in archive.namelist()
-        }
+def _digest(arrays: Mapping[str, np.ndarray]) -> str:
+    """Of all that two runs of one problem have in common."""
+    return digest({name: values for name, values in arrays.items() if name not in ("digest", "cpu_seconds")})
+
+
+def _check(arrays: Mapping[str, np.ndarray]) -> None:
+    """Refuse numbers that are none, and those that somebody has changed (files of magshell 0.1.0 have no digest)."""
+    for name, values in arrays.items():
+        if values.dtype.kind not in "biufU":
+            raise Unfit(f"{name} is of the type {values.dtype}")
+        if values.dtype.kind == "f" and not np.isfinite(values).all():
+            raise Unfit(f"{name} is not finite")
+        if values.dtype.kind == "f" and values.dtype != np.float64:
+            raise Unfit(f"{name} is of the type {values.dtype}, not float64")
+        if values.dtype.kind == "f" and np.abs(values).max(initial=0.0) > LARGEST:
+            raise Unfit(f"{name} has the number {np.abs(values).max():g}")
+        if values.dtype.kind == "U" and values.nbytes > MOST_TEXT:
+            raise Unfit(f"{name} is a text of {values.nbytes} bytes")
+    if "digest" in arrays and str(arrays["digest"]) != _digest(arrays):
+        raise Unfit("its numbers are not those that were written")
 
 
 def _waypoint(arrays: Mapping[str, np.ndarray]) -> Waypoint:
@@ -213,7 +243,10 @@ def _waypoint(arrays: Mapping[str, np.ndarray]) -> Waypoint:
 
 
 def _origin(arrays: Mapping[str, np.ndarray]) -> Origin:
-    return Origin(str(arrays["magshell"]), str(arrays["problem"]), json.loads(str(arrays["settings"])))
+    settings = json.loads(str(arrays["settings"]))
+    if not isinstance(settings, dict):
+        raise Unfit("settings is not a table")
+    return Origin(shortened(str(arrays["magshell"])), str(arrays["problem"]), settings)
 
 
 def _state(arrays: Mapping[str, np.ndarray], prefix: str) -> State:

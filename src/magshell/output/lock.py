@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 from magshell.errors import InputError
 from magshell.files import lock, naming
+from magshell.units import shortened
 
 NAME = ".lock"
 
@@ -29,10 +30,12 @@ def alone(directory: pathlib.Path) -> Iterator[None]:
     file = directory / NAME
     with contextlib.ExitStack() as stack:
         with naming(file):
-            held = stack.enter_context(open(file, "a+"))
+            held = stack.enter_context(open(file, "a+", encoding="utf-8", errors="replace"))
         if not lock(held):
             held.seek(0)
-            raise InputError(f"{directory}: another run writes into it ({held.read().strip() or 'it has just begun'})")
+            raise InputError(
+                f"{directory}: another run writes into it ({shortened(held.read(200).strip()) or 'it has just begun'})"
+            )
         with naming(file):
             held.truncate(0)
             held.write(f"process {os.getpid()} on {socket.gethostname()}\n")

@@ -7,12 +7,14 @@ import os
 import pathlib
 from typing import TYPE_CHECKING, Any
 
-from magshell.files import write_atomically
+from magshell.files import with_suffix, write_atomically
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from PIL.Image import Image
+    from PIL.PngImagePlugin import PngInfo
 
+MADE_BY = "magshell"
 DPI = 160
 INK = "#1a1f26"
 GREY = "#4b5563"
@@ -28,15 +30,18 @@ def deliver(figure: Figure, file: str | os.PathLike[str] | None) -> Image | None
 
     Raises
     ------
+    InputError
+        A name that does not end in `.png`.
     OSError
         The disk refuses; the message names the file.
     """
+    target = None if file is None else with_suffix(file, ".png")
     content = compact_png(figure)
-    if file is None:
+    if target is None:
         from PIL import Image
 
         return Image.open(io.BytesIO(content))
-    write_atomically(pathlib.Path(file), content)
+    write_atomically(target, content)
     return None
 
 
@@ -46,5 +51,20 @@ def compact_png(figure: Figure) -> bytes:
 
     drawn, compact = io.BytesIO(), io.BytesIO()
     figure.savefig(drawn, format="png", facecolor="white")
-    Image.open(drawn).convert("RGB").save(compact, format="png", optimize=True)
+    Image.open(drawn).convert("RGB").save(compact, format="png", optimize=True, pnginfo=said())
     return compact.getvalue()
+
+
+def said() -> PngInfo:
+    """What every picture says: that it was made here."""
+    from PIL.PngImagePlugin import PngInfo
+
+    says = PngInfo()
+    says.add_text("Software", MADE_BY)
+    return says
+
+
+def is_ours(file: pathlib.Path) -> bool:
+    """Whether a picture says that it was made here."""
+    with open(file, "rb") as opened:
+        return MADE_BY.encode() in opened.read(1000)

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from magshell.solver.settings import Settings
 
 NAME = "summary.json"
+MOST_BYTES = 16 * 2**20
 
 
 class SummaryWriter(Observer):

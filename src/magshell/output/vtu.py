@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import glob
 import os
 import pathlib
 from collections.abc import Collection, Iterable
@@ -11,7 +12,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from magshell.files import naming, write_atomically
+from magshell.files import naming, refuse_somebodys, with_suffix, write_atomically
 from magshell.output.registry import OUTPUTS
 from magshell.shell.triangle import REPEATED, SLOTS
 from magshell.solver.events import Observer
@@ -113,14 +114,19 @@ def save_path(path: Path, file: str | os.PathLike[str]) -> None:
     ----------
     path : Path
     file : path
-        The PVD file; another or no suffix is replaced by `.pvd`.
+        The PVD file; without a suffix it gets `.pvd`.
 
     Raises
     ------
+    InputError
+        A name that says another format; steps of something else in the folder beside it.
     OSError
         The disk refuses; the message names the file.
     """
     target = pathlib.Path(file)
+    target = with_suffix(target if target.suffix else target.with_name(f"{target.name}.pvd"), ".pvd")
+    made = b'type="Collection"' in target.read_bytes()[:200] if target.is_file() else False
+    refuse_somebodys(target.parent, made, (target.name, f"{glob.escape(target.stem)}/step-*.vtu"))
     writer = VtuWriter(target.parent, name=target.stem, folder=target.stem)
     writer.started(path.discretisation)
     for step in path.steps:

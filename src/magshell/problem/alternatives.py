@@ -15,7 +15,7 @@ from decimal import Context, Decimal
 from typing import Any
 
 from magshell.errors import InputError
-from magshell.units import NUMBER, QUANTITIES, Dimension, parse, quoted, shortened
+from magshell.units import NUMBER, QUANTITIES, Dimension, parse, quoted, shortened, spelled
 
 MOST_VALUES = 10_000
 _QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)\s*(\D.*)?", re.ASCII)
@@ -197,7 +197,7 @@ def _converted(number: Decimal, unit: str, to: str, item: str) -> Decimal:
 
 def _unit(text: str | None) -> str:
     """A unit in the spelling of `magshell.units`."""
-    unit = " ".join((text or "").split())
+    unit = spelled(" ".join((text or "").split()))
     return "1" + unit if unit.startswith("/") else unit
 
 

@@ -83,11 +83,11 @@ def _file_name(value: object) -> str:
 
 def _unit_of(dimension: units.Dimension) -> BeforeValidator:
     def read(value: object) -> str:
-        if value not in list(dimension.units):
+        if not isinstance(value, str) or dimension.value(value) is None:
             raise InputError(
                 f"{units.quoted(value)} is not a unit of {dimension.name}. {suggest(str(value)[:40], dimension.units)}"
             )
-        return str(value)
+        return units.spelled(value)
 
     return BeforeValidator(read)
 

@@ -8,17 +8,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from magshell import symmetry
 from magshell.arrays import FloatArray, IntArray
 from magshell.mesh import Mesh
 from magshell.mesh.files import FileMesh
-from magshell.mesh.geometry import unit
+from magshell.mesh.geometry import centres, unit
 from magshell.mesh.quality import worst
 from magshell.nodal import width
-from magshell.problem import load_report, schema
+from magshell.problem import load_report, remanence_report, schema, symmetry_report
 from magshell.problem.building import Problem
 from magshell.problem.fields import DIMENSION_OF_FIELD
 from magshell.problem.load_report import Strength
-from magshell.problem.remanence_report import sense
 from magshell.problem.wording import counted, quantity, vector
 from magshell.units import DENSITY, FLUX_DENSITY, LENGTH, STRESS, show
 
@@ -100,7 +100,7 @@ def _figures(problem: Problem) -> _Figures:
     shell, flux = problem.model.shell, np.array(problem.file.field.flux_density)
     mesh, material = shell.mesh, shell.material
     mu, lam = material.shear_modulus, material.lame_lambda
-    vectors = shell.remanence(mesh, _centres(mesh)[:, None])[:, 0]
+    vectors = shell.remanence(mesh, centres(mesh.points, mesh.elements)[:, None])[:, 0]
     return _Figures(
         extent=float(np.ptp(mesh.points, axis=0).max()),
         thickness=shell.thickness,
@@ -114,16 +114,11 @@ def _figures(problem: Problem) -> _Figures:
     )
 
 
-def _centres(mesh: Mesh) -> FloatArray:
-    x = mesh.points[mesh.elements]
-    return np.asarray(0.5 * x[:, 4:].sum(axis=1) - 0.25 * x[:, :4].sum(axis=1))
-
-
 def _smallest_radius(mesh: Mesh) -> float:
     """Least radius of curvature out of the surface, from the rise of the mid-side nodes; inf where flat."""
     x = mesh.points[mesh.elements]
     start, end, middle = x[:, :4], np.roll(x[:, :4], -1, axis=1), x[:, 4:]
-    inward = 4.0 * _centres(mesh)[:, None] - 3.0 * middle - np.roll(middle, 2, axis=1)
+    inward = 4.0 * centres(mesh.points, mesh.elements)[:, None] - 3.0 * middle - np.roll(middle, 2, axis=1)
     normal = unit(np.cross(end - start, inward))
     rise = np.abs(((middle - 0.5 * (start + end)) * normal).sum(axis=2))
     chord = np.linalg.norm(end - start, axis=2)
@@ -192,9 +187,9 @@ def _remanence(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]
     mesh, magnitude = problem.model.shell.mesh, figures.remanence
     for entry in problem.file.remanence:
         for group in entry.group or ():
-            yield group, f"{_span(magnitude, mesh.elements_of(group))}, {sense(entry)}"
+            yield group, f"{_span(magnitude, mesh.elements_of(group))}, {remanence_report.sense(entry)}"
         if entry.group is None:
-            yield "everywhere", f"{_span(magnitude, np.arange(len(magnitude)))}, {sense(entry)}"
+            yield "everywhere", f"{_span(magnitude, np.arange(len(magnitude)))}, {remanence_report.sense(entry)}"
     bare = int((magnitude == 0.0).sum())
     if bare:
         yield "none in", f"{bare} of {len(magnitude)} elements"
@@ -222,13 +217,15 @@ def _field(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
 
 
 def _supports(problem: Problem) -> Iterator[tuple[str, str]]:
+    planes = iter(symmetry.planes(problem.model))
     for table in problem.file.supports:
         nodes = counted(len(problem.model.shell.mesh.nodes_of(table.group)), "node")
         match table:
             case schema.SymmetryTable():
                 yield (
                     table.group,
-                    f"symmetry, normal {vector(table.normal)}, {nodes}",
+                    f"symmetry, normal {vector(table.normal)}, {nodes}"
+                    + symmetry_report.other_half(problem, next(planes)),
                 )
             case schema.PrescribeTable():
                 what = table.field if table.component is None else f"{table.field}{table.component}"
@@ -293,7 +290,11 @@ def _doubts(problem: Problem, figures: _Figures, strong: Strength) -> Iterator[s
         yield f"the bending load is {figures.bending_load:.2g}: the shell will hardly move; check the units"
     elif figures.bending_load > 1e5:
         yield f"the bending load is {figures.bending_load:.2g}: far beyond any experiment; check the units"
+    yield from remanence_report.doubts(problem)
     yield from load_report.doubts(problem, strong)
+    yield from symmetry_report.doubts(problem)
+    if problem.model.constraints.fixed[:, :3].all():
+        yield "the supports hold every node: the displacement is given everywhere, nothing is left to move"
     worst_corner = worst(problem.model.shell.mesh)["scaled_jacobian"]
     if worst_corner.value < 0.2:
         yield f"element {worst_corner.element} is badly shaped (scaled Jacobian {worst_corner.value:.2g})"

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from importlib.metadata import version
 from typing import TYPE_CHECKING
 
+from magshell.files import first_line, refuse_somebodys
 from magshell.output.rendering import RenderingUnavailable
 from magshell.output.style import deliver
 from magshell.reproduction.catalogue import EXAMPLES, Example, find
@@ -19,7 +20,7 @@ from magshell.reproduction.numbers import rows_of
 from magshell.reproduction.page import Section, write_page
 from magshell.reproduction.runs import solve_all
 from magshell.reproduction.shapes import shapes_figure, undeformed_figure
-from magshell.reproduction.table import Row, write_table
+from magshell.reproduction.table import COLUMNS, Row, write_table
 from magshell.reproduction.variants import variants
 
 if TYPE_CHECKING:
@@ -102,6 +103,7 @@ def reproduce(names: Sequence[str], directory: pathlib.Path, console: Console) -
     result = Reproduction(directory, find(names))
     files = {example.name: variants(example) for example in result.wanted}
     owner = {name: example for example in result.wanted for name in files[example.name]}
+    require_free(directory)
     _forget_earlier(directory)
     solved: dict[str, dict[str, Path]] = {example.name: {} for example in result.wanted}
     everything = {name: file for group in files.values() for name, file in group.items()}
@@ -165,6 +167,18 @@ def _figures(example: Example) -> Iterator[tuple[str, str, Callable[[Example, Ma
     if len(example.problems) > 1:
         yield "locking", _LOCKING, locking_figure
     yield "shapes", f"Deformed shapes at {fields} mT, true to scale and thickness.", shapes_figure
+
+
+def require_free(directory: pathlib.Path) -> None:
+    """Refuse a folder in which somebody's own files would be replaced or removed.
+
+    Raises
+    ------
+    InputError
+        Names them.
+    """
+    made = first_line(directory / TABLE).strip() == ",".join(COLUMNS)
+    refuse_somebodys(directory, made, (TABLE, PAGE, *(f"{example.name}-*.png" for example in EXAMPLES)))
 
 
 def _forget_earlier(directory: pathlib.Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import pathlib
 
 from magshell.errors import InputError, SolveError
@@ -45,6 +46,7 @@ def solve_cell(name: str, text: str, folder: str, directory: str, stop: str) -> 
         WAITING if it was stopped.
     """
     path = pathlib.Path(directory)
+    logging.getLogger("magshell.symmetry").addHandler(logging.NullHandler())  # the sweep has said it of all cells
     try:
         _solve(Source(name, text, pathlib.Path(folder)), path, StopWhenAsked(pathlib.Path(stop)))
     except KeyboardInterrupt:
@@ -75,7 +77,8 @@ def _solve(source: Source, directory: pathlib.Path, stop: Observer) -> None:
     problem = build(check(parse(source.text, source.name), source.name), *source)
     directory.mkdir(parents=True, exist_ok=True)
     with alone(directory):
-        remove_temporaries(directory)
+        if results.is_one(directory):
+            remove_temporaries(directory)
         try:
             earlier = results.read(directory).path if results.begun(directory) else None
         except InputError:

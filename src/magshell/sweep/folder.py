@@ -12,8 +12,8 @@ import tomllib
 from collections.abc import Sequence
 
 from magshell.errors import InputError
-from magshell.files import write_atomically
-from magshell.problem.reading import Source
+from magshell.files import read_at_most, refuse_somebodys, write_atomically
+from magshell.problem.reading import MOST_BYTES, Source
 
 _VERSION = 1
 
@@ -43,8 +43,9 @@ class SweepFolder:
         InputError
             The folder holds another sweep, or the results of a run.
         """
-        if self.definition.exists() and self.cells.exists():
+        if self.definition.exists():
             found, others = self.read()
+        if self.definition.exists() and self.cells.exists():
             if (found.text, found.name) != (source.text, source.name):
                 raise InputError(f"--out {self.path}: holds the sweep of another '{found.name}'; name another folder")
             if list(settings) != others:
@@ -53,6 +54,7 @@ class SweepFolder:
             return
         if not self.definition.exists() and ((self.path / "summary.json").exists() or self.problem.exists()):
             raise InputError(f"--out {self.path}: holds the results of a run; name another folder")
+        refuse_somebodys(self.path, self.definition.exists(), ("sweep.csv", "sweep.png", "cells/*"))
         write_atomically(self.problem, source.text.encode())
         write_atomically(self.definition, _definition(source, settings).encode())
 
@@ -65,8 +67,8 @@ class SweepFolder:
             There is no sweep, or its files are damaged.
         """
         try:
-            definition = tomllib.loads(self.definition.read_text(encoding="utf-8"))
-            text = self.problem.read_text(encoding="utf-8")
+            definition = tomllib.loads(read_at_most(self.definition, MOST_BYTES).decode())
+            text = read_at_most(self.problem, MOST_BYTES).decode()
         except (FileNotFoundError, NotADirectoryError) as error:
             raise InputError(f"{error.filename}: there is no such file, so this is no folder of a sweep") from None
         except OSError as error:

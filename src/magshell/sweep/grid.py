@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+from magshell import symmetry
 from magshell.errors import InputError, NothingLoads
 from magshell.problem.alternatives import Setting, Value
 from magshell.problem.building import build
@@ -35,6 +36,8 @@ class Cell:
         Of material and coupling: what the kernels are compiled for.
     undeformed : bool
         Nothing acts on the shell, so there is nothing to solve.
+    broken : tuple of str
+        What breaks its mirror planes.
     """
 
     number: int
@@ -44,6 +47,7 @@ class Cell:
     probes: tuple[str, ...]
     laws: tuple[type, ...] = ()
     undeformed: bool = False
+    broken: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -91,6 +95,15 @@ def grid(
     return cells
 
 
+def doubts(cells: Sequence[Cell]) -> list[str]:
+    """What breaks the mirror planes of the cells, each once, with the first of them."""
+    where: dict[str, list[str]] = {}
+    for cell in cells:
+        for fault in cell.broken:
+            where.setdefault(fault, []).append(f"cell {cell.number}: {cell.label}")
+    return _lines(where, len(cells), "symmetry", "warnings")
+
+
 def _cell(number: int, words: str, changes: dict[str, Value], source: Source) -> Cell:
     found = changed(source, changes)
     file = check(parse(found.text, found.name), found.name)
@@ -99,15 +112,15 @@ def _cell(number: int, words: str, changes: dict[str, Value], source: Source) ->
         model = build(file, *found).model
     except NothingLoads:
         return replace(cell, undeformed=True)
-    return replace(cell, laws=(type(model.shell.material), type(model.coupling)))
+    return replace(cell, laws=(type(model.shell.material), type(model.coupling)), broken=tuple(symmetry.broken(model)))
 
 
-def _lines(faults: dict[str, list[str]], count: int, name: str) -> list[str]:
+def _lines(faults: dict[str, list[str]], count: int, name: str, what: str = "errors") -> list[str]:
     """What is wrong, and in which cells."""
     lines = []
     for fault, where in faults.items():
         others = f"; and {len(where) - 1} more" if len(where) > 1 else ""
         lines.append(f"{fault} (every cell)" if len(where) == count else f"{fault} ({where[0]}{others})")
     if len(lines) > MOST_ERRORS:
-        lines[MOST_ERRORS:] = [f"{name}: and {len(lines) - MOST_ERRORS} more errors"]
+        lines[MOST_ERRORS:] = [f"{name}: and {len(lines) - MOST_ERRORS} more {what}"]
     return lines

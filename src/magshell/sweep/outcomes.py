@@ -8,7 +8,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from magshell.files import csv_line, write_atomically
+from magshell.files import csv_line, read_at_most, write_atomically
+from magshell.output.summary import MOST_BYTES, NAME
 from magshell.problem.alternatives import Setting, Value
 from magshell.sweep.grid import Cell
 
@@ -54,10 +55,10 @@ def undeformed(cell: Cell) -> Outcome:
 def outcome_in(directory: pathlib.Path) -> Outcome:
     """What the results in the folder of a cell say; WAITING where there are none, or none that can be read."""
     try:
-        summary = json.loads((directory / "summary.json").read_bytes())
+        summary = json.loads(read_at_most(directory / NAME, MOST_BYTES))
         converged, reason = summary["converged"], str(summary["reason"])
         summary["probes"].items()
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return WAITING
     return Outcome(converged is True, "" if converged is True else reason, summary)
 

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import csv
-import math
 import os
 import pathlib
 import warnings
-from collections.abc import Iterator, Sequence
 from tokenize import TokenError
 from typing import TYPE_CHECKING
 
@@ -18,6 +15,7 @@ from magshell.arrays import FloatArray
 from magshell.errors import InputError, suggest
 from magshell.magnetics.remanence.deformed import Deformed
 from magshell.magnetics.remanence.sampled import at_places, per_element
+from magshell.magnetics.remanence.tables import LARGEST, Columns, Table, duplicate, read_table, unreadable
 from magshell.magnetics.remanence.template import Placed
 from magshell.magnetics.remanence.vectors import Remanence
 
@@ -28,8 +26,6 @@ PLACE = ("x1", "x2", "x3")
 FLUX = ("b1", "b2", "b3")
 DISPLACEMENT = ("u1", "u2", "u3")
 COINCIDENT = 1e-5
-LARGEST = 1e60
-"""Of numbers in a table, whatever their unit: products of a few of them are still finite."""
 
 
 def from_file(
@@ -45,6 +41,7 @@ def from_file(
     file : path
         A CSV file whose first line names the columns `b1,b2,b3`, and `x1,x2,x3` where the rows are places (see
         `at_places`); without them it has one row per element, in the order of the mesh. Other columns are passed over.
+        Semicolons, tabs, decimal commas and units in headings are read (`magshell.magnetics.remanence.tables`).
         Or a `.npy` file: an array (elements, 3).
     flux_density_unit : str
         Of its vectors.
@@ -56,19 +53,21 @@ def from_file(
     Raises
     ------
     InputError
-        No such file; no such column; a line with a number that is none, too few or too many; an unknown unit.
+        No such file; no such column; a line with a number that is none, too few or too many; an unknown unit, or
+        another one in a heading; a place with two values.
     """
     tesla = factor(flux_density_unit, units.FLUX_DENSITY)
     path = pathlib.Path(file)
     if path.suffix == ".npy":
-        vectors, places = read_array(path), None
-    else:
-        vectors, places = read_columns(path, FLUX, PLACE)
-    if places is None:
-        return per_element(tesla * vectors)
+        return per_element(tesla * read_array(path))
+    flux = Columns(FLUX, units.FLUX_DENSITY, flux_density_unit, "flux_density_unit")
+    table = read_table(path, flux, Columns(PLACE, units.LENGTH, length_unit, "length_unit"))
+    if table.optional is None:
+        return per_element(tesla * table.wanted)
     if length_unit is None:
         raise InputError(f"{path.name}: has the columns {','.join(PLACE)}; length_unit must say in which unit")
-    return at_places(factor(length_unit, units.LENGTH) * places, tesla * vectors, tolerance)
+    _one_value_each(path, table, "Keep one of the lines")
+    return at_places(factor(length_unit, units.LENGTH) * table.optional, tesla * table.wanted, tolerance)
 
 
 class DisplacementsAtPlaces:
@@ -112,84 +111,39 @@ def displaced_from_file(file: str | os.PathLike[str], length_unit: str = "m") ->
     path = pathlib.Path(file)
     if path.suffix == ".npy":
         return Deformed(metre * read_array(path))
-    displacements, places = read_columns(path, DISPLACEMENT, PLACE)
-    if places is None:
-        return Deformed(metre * displacements)
-    return DisplacementsAtPlaces(metre * places, metre * displacements, path.name)
+    columns = (Columns(names, units.LENGTH, length_unit, "length_unit") for names in (DISPLACEMENT, PLACE))
+    table = read_table(path, *columns)
+    if table.optional is None:
+        return Deformed(metre * table.wanted)
+    advice = "At a slit, leave the places out and give a line for each node, in the order of the mesh"
+    _one_value_each(path, table, advice)
+    return DisplacementsAtPlaces(metre * table.optional, metre * table.wanted, path.name)
+
+
+def _one_value_each(file: pathlib.Path, table: Table, advice: str) -> None:
+    """Refuse a place that stands in a table twice, with different values."""
+    assert table.optional is not None
+    found = duplicate(table.optional, table.wanted)
+    if found is not None:
+        earlier, later = (table.lines[row] for row in found)
+        place, one, other = (
+            ", ".join(f"{number:.6g}" for number in numbers)
+            for numbers in (table.optional[found[1]], table.wanted[found[0]], table.wanted[found[1]])
+        )
+        raise InputError(
+            f"{file.name}, line {later}: the place ({place}) has ({other}), but in line {earlier} it has ({one}). "
+            + advice
+        )
 
 
 def factor(unit: str, dimension: units.Dimension) -> float:
     """SI value of a unit."""
-    if unit not in dimension.units:
+    value = dimension.value(unit)
+    if value is None:
         raise InputError(
             f"'{units.shortened(unit)}' is not a unit of {dimension.name}. {suggest(unit, dimension.units)}"
         )
-    return float(dimension.units[unit])
-
-
-def read_columns(
-    file: pathlib.Path, wanted: Sequence[str], optional: Sequence[str]
-) -> tuple[FloatArray, FloatArray | None]:
-    """Columns of a CSV file: those wanted (rows, k), and the optional ones (rows, k) if the file has them.
-
-    Empty lines and lines that begin with # are passed over.
-
-    Raises
-    ------
-    InputError
-        With file and line.
-    """
-    lines = _lines(file)
-    number, header = next(lines, (0, []))
-    if not number:
-        raise InputError(f"{file.name}: is empty; its first line names the columns {','.join((*optional, *wanted))}")
-    names = [name.strip() for name in header]
-    for name in (*wanted, *(optional if set(optional) & set(names) else ())):
-        if names.count(name) != 1:
-            fault = "there is no column" if name not in names else "more than one column is named"
-            raise InputError(
-                f"{file.name}, line {number}: {fault} '{name}'; the columns are {units.quoted(','.join(names))}"
-            )
-    columns = [*wanted, *(optional if optional[0] in names else ())]
-    places = [names.index(name) for name in columns]
-    rows = [_row(file, number, fields, names, places) for number, fields in lines]
-    if not rows:
-        raise InputError(f"{file.name}: has no rows below its first line")
-    table = np.array(rows)
-    return table[:, : len(wanted)], table[:, len(wanted) :] if len(columns) > len(wanted) else None
-
-
-def _row(file: pathlib.Path, number: int, fields: list[str], names: list[str], places: list[int]) -> list[float]:
-    if len(fields) != len(names):
-        raise InputError(f"{file.name}, line {number}: has {len(fields)} fields; the first line has {len(names)}")
-    row = []
-    for place in places:
-        try:
-            value = float(fields[place])
-        except ValueError:
-            value = math.nan
-        if not abs(value) < LARGEST:
-            found = units.quoted(fields[place].strip())
-            fault = f"more than {LARGEST:g}" if math.isfinite(value) else "not a finite number"
-            raise InputError(f"{file.name}, line {number}: {names[place]} is {found}, {fault}")
-        row.append(value)
-    return row
-
-
-def _lines(file: pathlib.Path) -> Iterator[tuple[int, list[str]]]:
-    """Line number and fields of every line that says something."""
-    try:
-        with file.open(encoding="utf-8-sig", newline="") as opened:
-            reader = csv.reader(opened)
-            for fields in reader:
-                if fields and any(field.strip() for field in fields) and not fields[0].lstrip().startswith("#"):
-                    yield reader.line_num, fields
-    except UnicodeDecodeError as error:
-        raise InputError(f"{file.name}: is not a text file in UTF-8 (byte {error.start})") from None
-    except csv.Error as error:
-        raise InputError(f"{file.name}: is not a CSV file: {error}") from None
-    except (OSError, ValueError) as error:
-        raise InputError(_unreadable(file, error)) from None
+    return value
 
 
 def read_array(file: pathlib.Path) -> FloatArray:
@@ -199,7 +153,7 @@ def read_array(file: pathlib.Path) -> FloatArray:
             warnings.simplefilter("ignore")  # of a header that is damaged or of another age
             array = np.load(file, allow_pickle=False)
     except OSError as error:
-        raise InputError(_unreadable(file, error)) from None
+        raise InputError(unreadable(file, error)) from None
     except (ValueError, EOFError, SyntaxError, TokenError, MemoryError) as error:
         raise InputError(f"{file.name}: is not an array of numbers in NumPy's format: {error}") from None
     if not isinstance(array, np.ndarray) or array.dtype.kind not in "fiu" or array.ndim != 2 or array.shape[1] != 3:
@@ -213,9 +167,3 @@ def read_array(file: pathlib.Path) -> FloatArray:
         if not allowed.all():
             raise InputError(f"{file.name}: row {np.flatnonzero(~allowed.all(axis=1))[0]} {fault}")
     return numbers
-
-
-def _unreadable(file: pathlib.Path, error: Exception) -> str:
-    if isinstance(error, FileNotFoundError):
-        return f"{file}: there is no such file"
-    return f"{file}: cannot be read: {getattr(error, 'strerror', None) or error}"

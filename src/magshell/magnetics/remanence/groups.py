@@ -9,6 +9,7 @@ import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
+from magshell.magnetics.remanence.sampled import averaged
 from magshell.magnetics.remanence.template import carried, placed
 from magshell.magnetics.remanence.vectors import Remanence
 
@@ -46,6 +47,14 @@ class ByGroup:
             owner[members] = group
             values[members] = of(remanence, _only(members, points))[members]
         return values
+
+    def averaged(self, mesh: Mesh, points: FloatArray) -> IntArray:
+        """Elements whose remanence is the mean over several places."""
+        parts = [
+            averaged(remanence, mesh, _only(mesh.elements_of(group), points))
+            for group, remanence in self._remanences.items()
+        ]
+        return np.unique(np.concatenate([np.zeros(0, dtype=np.int64), *parts]))
 
     def placed(self, mesh: Mesh, points: FloatArray) -> FloatArray | None:
         """Where the templates of the groups have the points; other groups stay; None without any template."""

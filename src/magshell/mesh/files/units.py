@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from magshell.errors import InputError, suggest
-from magshell.units import LENGTH, quoted
+from magshell.units import LENGTH, quoted, spelled
 
 
 def length_unit(unit: str) -> float:
@@ -14,9 +14,10 @@ def length_unit(unit: str) -> float:
     InputError
         No unit of length.
     """
-    if unit not in LENGTH.units:
+    value = LENGTH.value(str(unit))
+    if value is None:
         raise InputError(f"unit: {quoted(unit)} is not a unit of length. {suggest(str(unit), LENGTH.units)}")
-    return float(LENGTH.units[unit])
+    return value
 
 
 def agreed(given: str | None, said: str | None, name: str) -> str:
@@ -37,4 +38,4 @@ def agreed(given: str | None, said: str | None, name: str) -> str:
         )
     if given is not None and said is not None and length_unit(given) != length_unit(said):
         raise InputError(f"unit: is '{given}', but {name} says that its lengths are in {said}; leave the unit out")
-    return str(given or said)
+    return spelled(str(given or said))

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import os
-import pathlib
 from collections.abc import Iterable, Mapping
 
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
-from magshell.files import write_atomically
+from magshell.files import with_suffix, write_atomically
 from magshell.mesh.edges import edge_keys
 from magshell.mesh.files.units import length_unit
 from magshell.mesh.mesh import Mesh
@@ -24,17 +23,18 @@ def write(mesh: Mesh, file: str | os.PathLike[str], unit: str = "m") -> None:
     ----------
     mesh : Mesh
     file : path
+        `.msh`.
     unit : str
         Of the lengths in the file: m, cm, mm, um.
 
     Raises
     ------
     InputError
-        No such unit.
+        No such unit; a name that says another format.
     OSError
         The disk refuses; the message names the file.
     """
-    write_atomically(pathlib.Path(file), msh(mesh, unit))
+    write_atomically(with_suffix(file, ".msh"), msh(mesh, unit))
 
 
 def msh(mesh: Mesh, unit: str) -> bytes:

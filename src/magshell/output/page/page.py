@@ -13,7 +13,7 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 from magshell.errors import InputError
-from magshell.files import write_atomically
+from magshell.files import with_suffix, write_atomically
 from magshell.output.page.data import collect
 from magshell.output.page.facts import Facts, facts
 from magshell.output.page.steps import shown_steps
@@ -58,11 +58,11 @@ def write_page(
     Raises
     ------
     InputError
-        A path without steps, or no such output.
+        A path without steps, no such output, or a name that says another format.
     OSError
         The disk refuses; the message names the file.
     """
-    target = pathlib.Path(file)
+    target = with_suffix(file, ".html", ".htm")
     write_atomically(target, page(path, title, color, about, advance).encode())
     return target
 

@@ -1,0 +1,190 @@
+"""What breaks the mirror planes of a model: field, loads, or where its shell lies (`magshell.reflection` says why)."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from magshell.arrays import FloatArray, IntArray
+from magshell.loads import Force, Gravity, Load, Moment, Traction
+from magshell.mesh import Mesh
+from magshell.mesh.geometry import COINCIDENT
+from magshell.reflection import angle_to_plane, in_plane, is_normal
+from magshell.shell.normals import nodal_normals
+from magshell.supports import SymmetryPlane
+from magshell.units import ACCELERATION, FLUX_DENSITY, FORCE, MOMENT, STRESS, Dimension, show
+
+if TYPE_CHECKING:
+    from magshell.model import Model
+
+logger = logging.getLogger(__name__)
+
+MIRRORED, REVERSED = 1, -1
+# Degrees by which a coarse curved mesh may miss a right angle between shell and plane.
+FOLD = 15.0
+JUMP = "beyond it acts the image, with the component along the normal reversed"
+WHOLE = "Model the whole part, or choose other planes"
+
+
+class Plane(NamedTuple):
+    """A mirror plane: its group, unit normal (3,) and the nodes held in it."""
+
+    group: str
+    normal: FloatArray
+    nodes: IntArray
+
+
+def planes(model: Model) -> list[Plane]:
+    """The mirror planes of a model."""
+    mesh = model.shell.mesh
+    return [
+        Plane(support.group, support.unit_normal, mesh.nodes_of(support.group))
+        for support in model.supports
+        if isinstance(support, SymmetryPlane)
+    ]
+
+
+def remanence_sign(model: Model, plane: Plane) -> int | None:
+    """How the other half must be magnetised: `MIRRORED` or `REVERSED` (mirrored and reversed); None: in no way.
+
+    Without a field or without remanence it is `MIRRORED`, and nothing depends on it.
+    """
+    fields = [vector for _, vector in _fields(model)]
+    if all(in_plane(vector, plane.normal) for vector in fields):
+        return MIRRORED
+    return REVERSED if all(is_normal(vector, plane.normal) for vector in fields) else None
+
+
+def broken(model: Model) -> list[str]:
+    """What breaks the model's mirror planes, in sentences: the plane, what breaks it and what would be right."""
+    found = []
+    for plane in planes(model):
+        faults = (*_of_place(model.shell.mesh, plane), *_of_field(model, plane), *_of_loads(model, plane))
+        found += [f"symmetry '{plane.group}': {fault}" for fault in faults]
+    return found
+
+
+def _of_place(mesh: Mesh, plane: Plane) -> Iterator[str]:
+    """Nodes that are not in one plane, a shell that is not on one side of it, or meets it at an angle."""
+    heights = mesh.points[plane.nodes] @ plane.normal
+    if np.ptp(heights) > COINCIDENT * mesh.size:
+        low, high = plane.nodes[np.argmin(heights)], plane.nodes[np.argmax(heights)]
+        yield (
+            f"its nodes do not lie in one plane with the normal {_vector(plane.normal)}: along it, nodes {low} and "
+            f"{high} are {np.ptp(heights):.3g} m apart. Check normal and group"
+        )
+        return
+    normals = nodal_normals(mesh.points, mesh.elements)[plane.nodes]
+    angle = np.array([angle_to_plane(normal, plane.normal) for normal in normals])
+    worst = int(np.argmax(angle))
+    if angle[worst] > FOLD:
+        node, fold = plane.nodes[worst], 2.0 * angle[worst]
+        yield (
+            f"at node {node} the normal of the shell is {angle[worst]:.3g}° off the plane, in which it must lie: with "
+            f"its image the shell is folded there by {fold:.3g}°. Check normal, unless such a fold is meant"
+        )
+    touching = np.isin(mesh.elements, plane.nodes).any(axis=1)
+    centres = mesh.points[mesh.elements[touching]].mean(axis=1) @ plane.normal - heights.mean()
+    if centres.min() < -COINCIDENT * mesh.size and centres.max() > COINCIDENT * mesh.size:
+        yield (
+            "the shell lies on both sides of the plane, so nothing is mirrored in it. Keep one side, or leave the "
+            "support out"
+        )
+
+
+def _of_field(model: Model, plane: Plane) -> Iterator[str]:
+    """A field that is neither in the plane nor normal to it, or now this and now that."""
+    if not np.any(model.shell.remanence_at_points) or remanence_sign(model, plane) is not None:
+        return
+    several = len(model.stages) > 1
+    seen: dict[int, int] = {}
+    for stage, vector in _fields(model):
+        if in_plane(vector, plane.normal):
+            seen.setdefault(MIRRORED, stage)
+        elif is_normal(vector, plane.normal):
+            seen.setdefault(REVERSED, stage)
+        else:
+            where = f" in stage {stage + 1}" if several else ""
+            yield (
+                f"the field {_shown(vector, FLUX_DENSITY)}{where} is {angle_to_plane(vector, plane.normal):.3g}° off "
+                "the plane: it must lie in it (the other half then has the mirrored remanence) or be normal to it "
+                f"(mirrored and reversed). {WHOLE}"
+            )
+            return
+    yield (
+        f"the field lies in the plane in stage {seen[MIRRORED] + 1} and is normal to it in stage {seen[REVERSED] + 1}: "
+        "the other half would need the mirrored remanence in the one, and the mirrored and reversed one in the other. "
+        f"{WHOLE}"
+    )
+
+
+def _fields(model: Model) -> Iterator[tuple[int, FloatArray]]:
+    """Stage and flux density (3,) at multiplier 1 of all fields of the path.
+
+    Of one that turns there are three, which are in the plane (normal to it) only if all on the way are.
+    """
+    if not model.field.magnitude:
+        return
+    for number in range(len(model.stages)):
+        start, end = (model.course(number).amounts(load_factor) for load_factor in (0.0, 1.0))
+        if start.field or end.field:
+            turn = float(np.clip(end.angle - start.angle, -2.0, 2.0))
+            for angle in {end.angle, end.angle - 0.5 * turn, end.angle - turn}:
+                yield number, model.field.turned(angle)
+
+
+def _of_loads(model: Model, plane: Plane) -> Iterator[str]:
+    """Weight and loads in the plane that are not their own image, and loads of an area that jump there."""
+    mesh = model.shell.mesh
+    for load in model.loads:
+        name = load.kind if load.group is None else f"{load.kind} on '{load.group}'"
+        match load:
+            case Moment() if _acts_in(mesh, load, plane):
+                vector = np.array(load.total, dtype=float)
+                if not is_normal(vector, plane.normal):
+                    off = 90.0 - angle_to_plane(vector, plane.normal)
+                    yield (
+                        f"{name} {_shown(vector, MOMENT)} is {off:.3g}° off the normal of the plane, whose support "
+                        f"takes all the rest. {WHOLE}"
+                    )
+                continue
+            case Gravity():
+                given, dimension, effect = load.acceleration, ACCELERATION, "the other half would weigh another way"
+            case Force() if _acts_in(mesh, load, plane):
+                given, dimension, effect = load.total, FORCE, "its support takes what is normal to it"
+            case Force() if _ends_at(mesh, load, plane):
+                given, dimension, effect = load.total, FORCE, JUMP
+            case Traction() if _ends_at(mesh, load, plane):
+                given, dimension, effect = load.traction, STRESS, JUMP
+            case _:
+                continue
+        vector = np.array(given, dtype=float)
+        if not in_plane(vector, plane.normal):
+            off = angle_to_plane(vector, plane.normal)
+            yield f"{name} {_shown(vector, dimension)} is {off:.3g}° off the plane: {effect}. {WHOLE}"
+
+
+def _acts_in(mesh: Mesh, load: Load, plane: Plane) -> bool:
+    """Whether an edge or a node of its group, which must not be one of elements, lies in the plane."""
+    group = str(load.group)
+    if group in mesh.edge_groups:
+        return bool(np.isin(mesh.edge_groups[group], plane.nodes).all(axis=1).any())
+    return group in mesh.node_groups and bool(np.isin(mesh.node_groups[group], plane.nodes).any())
+
+
+def _ends_at(mesh: Mesh, load: Load, plane: Plane) -> bool:
+    """Whether an element of its group has an edge in the plane."""
+    members = mesh.element_groups.get(str(load.group))
+    return members is not None and bool((np.isin(mesh.elements[members], plane.nodes).sum(axis=1) > 2).any())
+
+
+def _shown(vector: FloatArray, dimension: Dimension) -> str:
+    small = 1e-9 * float(np.linalg.norm(vector))
+    return f"({', '.join(show(x if abs(x) > small else 0.0, dimension) for x in vector.tolist())})"
+
+
+def _vector(components: FloatArray) -> str:
+    return f"({', '.join(f'{component:.4g}' for component in components)})"
