@@ -15,6 +15,7 @@ from faults.damage import damaged
 from faults.limits import bounded, located, share
 from magshell.errors import InputError
 from magshell.mesh import Mesh, read
+from magshell.mesh.files.scripts import put_alone
 
 DATA = Path(__file__).parent.parent / "mesh" / "files" / "data"
 PLATE = ms.mesh.rectangle(20e-3, 5e-3, (4, 1))
@@ -236,3 +237,18 @@ def test_empty(suffix: str, folder: Path) -> None:
     with pytest.raises(InputError) as error:
         read(folder / f"empty{suffix}", "mm")
     located(error.value, f"empty{suffix}")
+
+
+@share(0.1)
+@given(content=damaged((DATA / "two-plates.geo").read_bytes()) | st.binary(max_size=300))
+def test_scripts(content: bytes, tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Before gmsh sees one it is understood, or refused."""
+    folder = tmp_path_factory.mktemp("script")
+    (folder / "part.geo").write_bytes(content)
+    (folder / "alone").mkdir()
+    try:
+        copy = put_alone(folder / "part.geo", folder / "alone")
+    except InputError as error:
+        located(error, "part.geo")
+    else:
+        assert copy.parent.parent == folder / "alone"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import pathlib
+import re
 
 import numpy as np
 import pytest
@@ -314,3 +315,30 @@ def test_a_written_file_is_whole_or_absent(tmp_path, monkeypatch):
         ms.mesh.write(mesh, tmp_path / "old.msh")
     assert [(file.name, file.read_bytes()) for file in tmp_path.iterdir()] == [("old.msh", b"old")]
     assert msh(mesh, "m").startswith(b"$MeshFormat\n4.1 0 8\n")
+
+
+@pytest.mark.parametrize(("version", "pattern"), [("22", r"(?m)^(\d+) 16 "), ("41", r"(?m)^(2 2) 16 ")])
+def test_surfaces_of_an_unknown_type_are_listed(version, pattern, tmp_path):
+    """Some of the elements as if of third order: without them the plate would have a hole."""
+    text, changed = re.subn(pattern, r"\1 36 ", (DATA / f"two-plates-{version}.msh").read_text(), count=4)
+    assert changed
+    (tmp_path / "part.msh").write_text(text)
+    with pytest.raises(
+        InputError, match=r"^part.msh: has elements of types that cannot be used: 4 of type 36\. .*holes"
+    ):
+        ms.mesh.read(tmp_path / "part.msh", unit="mm")
+
+
+@needs_gmsh
+def test_surfaces_of_an_unknown_type_in_a_binary_file(tmp_path):
+    with session("test") as gmsh:
+        gmsh.model.occ.addRectangle(0, 0, 0, 2, 1)
+        gmsh.model.occ.synchronize()
+        gmsh.option.setNumber("Mesh.MeshSizeMax", 0.5)
+        gmsh.option.setNumber("Mesh.Binary", 1)
+        gmsh.model.mesh.generate(2)
+        gmsh.model.mesh.setOrder(3)
+        count = len(gmsh.model.mesh.getElements(2)[1][0])
+        gmsh.write(str(tmp_path / "part.msh"))
+    with pytest.raises(InputError, match=rf"part.msh: .*cannot be used: {count} of type 21 \(Triangle 10\)"):
+        ms.mesh.read(tmp_path / "part.msh", unit="mm")

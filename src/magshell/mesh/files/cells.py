@@ -47,6 +47,8 @@ GMSH = {1: LINE2, 2: TRIANGLE3, 3: QUAD4, 8: LINE3, 9: TRIANGLE6, 10: QUAD9, 15:
 """By the number that gmsh gives the type."""
 GMSH_SOLIDS = {4, 5, 6, 7, 11, 12, 13, 14, 17, 18, 19, 29, 30, 31, 71, 72, 73, 79, 80, 81, 82, 83, 90, 91, 92, 93}
 """gmsh's numbers of tetrahedra, hexahedra, prisms and pyramids."""
+GMSH_SURFACES = {*range(20, 26), 34, *range(36, 62), 69, 85, 86, 135}
+"""gmsh's numbers of triangles, quadrilaterals and polygons of other kinds."""
 VTK = {
     1: (POINT,),
     3: (LINE2,),

@@ -49,6 +49,7 @@ def contents_of(gmsh: Any, name: str) -> Contents:
         raise InputError(f"{name}: an element has node {number}, which is not there")
 
     blocks: list[Block] = []
+    unread: dict[str, int] = {}
     for dimension, entity in gmsh.model.getEntities():
         if dimension == 3:
             continue
@@ -58,7 +59,9 @@ def contents_of(gmsh: Any, name: str) -> Contents:
                 continue
             kind = GMSH.get(int(kind_number))
             if kind is None:
-                raise InputError(f"{name}: elements of gmsh's type {kind_number} cannot be used")
+                called = f"{kind_number} ({gmsh.model.mesh.getElementProperties(kind_number)[0]})"
+                unread[called] = unread.get(called, 0) + len(elements)
+                continue
             rows = places(numbers, np.array(nodes, dtype=np.int64).reshape(-1, kind.nodes), missing)
             everything = np.arange(len(elements))
             blocks.append(Block(kind, np.array(elements, dtype=np.int64), rows, dict.fromkeys(names, everything)))
@@ -67,7 +70,7 @@ def contents_of(gmsh: Any, name: str) -> Contents:
     order = tuple(gmsh.model.getPhysicalName(dimension, tag) for dimension, tag in groups)
     used = np.unique(np.concatenate([block.nodes.ravel() for block in blocks])) if blocks else np.zeros(0, np.int64)
     blocks = [replace(block, nodes=np.searchsorted(used, block.nodes)) for block in blocks]
-    return Contents(every[used], blocks, solids=solids, order=order)
+    return Contents(every[used], blocks, solids=solids, unread=unread, order=order)
 
 
 def _group_names(gmsh: Any, dimension: int, entity: int) -> list[str]:

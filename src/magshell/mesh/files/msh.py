@@ -11,7 +11,7 @@ import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
-from magshell.mesh.files.cells import GMSH, GMSH_SOLIDS
+from magshell.mesh.files.cells import GMSH, GMSH_SOLIDS, GMSH_SURFACES
 from magshell.mesh.files.contents import GROUPED, Block, Contents, in_order, places
 from magshell.mesh.files.lines import Lines
 from magshell.units import shortened
@@ -63,11 +63,11 @@ def read_msh(content: bytes, name: str) -> Contents:
             raise InputError(f"{name}: has no section ${needed}; it is not a mesh, or it is cut short")
     names = _names(lines, sections.get("PhysicalNames"))
     read = _read_4 if version == "4.1" else _read_2
-    numbers, points, blocks, solids = read(lines, sections, names)
+    numbers, points, blocks, solids, unread = read(lines, sections, names)
     if not len(numbers):
         raise InputError(f"{name}: the section $Nodes is empty")
     unit = _unit(lines, sections.get("Comments"))
-    return Contents(points, blocks, solids=solids, unit=unit, order=tuple(names.values()))
+    return Contents(points, blocks, solids=solids, unread=unread, unit=unit, order=tuple(names.values()))
 
 
 def _version(content: bytes, name: str) -> str:
@@ -157,18 +157,23 @@ def group_name(dimension: int, tag: int, names: Names) -> str:
     return names.get((dimension, tag)) or f"{GROUPED[dimension]}-{tag}"
 
 
-_Read = tuple[IntArray, FloatArray, list[Block], int]
+_Read = tuple[IntArray, FloatArray, list[Block], int, dict[str, int]]
+"""Numbers of nodes, their positions, elements; how many have a volume; how many of what type cannot be used."""
 
 
 def _read_4(lines: Lines, sections: dict[str, _Section], names: Names) -> _Read:
     tagged = _physical_tags(lines, sections.get("Entities"))
     numbers, points = _nodes_4(lines, sections["Nodes"])
     blocks, solids = [], 0
+    unread: dict[str, int] = {}
     for dimension, tag, kind_number, first, count in _element_blocks(lines, sections["Elements"]):
         if dimension == 3:
             solids += count
             continue
         kind = GMSH.get(kind_number)
+        if kind is None and dimension == 2:
+            unread[str(kind_number)] = unread.get(str(kind_number), 0) + count
+            continue
         if kind is None or kind.dimension != dimension:
             _unknown_kind(lines, first - 1, kind_number)
         what = f"an element's number and its {kind.nodes} nodes"
@@ -178,7 +183,7 @@ def _read_4(lines: Lines, sections: dict[str, _Section], names: Names) -> _Read:
         everything = np.arange(count)
         groups = {group_name(dimension, tag, names): everything for tag in tagged.get((dimension, tag), ())}
         blocks.append(Block(kind, rows[:, 0], nodes, groups))
-    return numbers, points, blocks, solids
+    return numbers, points, blocks, solids, unread
 
 
 def _physical_tags(lines: Lines, section: _Section | None) -> dict[tuple[int, int], list[int]]:
@@ -293,11 +298,12 @@ def _read_2(lines: Lines, sections: dict[str, _Section], names: Names) -> _Read:
         [rows[:, 1:]],
         [origin],
     )
-    blocks, solids = _elements_2(lines, sections["Elements"], numbers, names)
-    return numbers, points, blocks, solids
+    return numbers, points, *_elements_2(lines, sections["Elements"], numbers, names)
 
 
-def _elements_2(lines: Lines, section: _Section, numbers: IntArray, names: Names) -> tuple[list[Block], int]:
+def _elements_2(
+    lines: Lines, section: _Section, numbers: IntArray, names: Names
+) -> tuple[list[Block], int, dict[str, int]]:
     count = _count(lines, section, "the number of elements")
     _exact(lines, section, count, "elements")
     alike: dict[tuple[int, int], list[int]] = defaultdict(list)
@@ -308,9 +314,13 @@ def _elements_2(lines: Lines, section: _Section, numbers: IntArray, names: Names
         except (ValueError, IndexError):
             lines.fail(line, f"expected an element: number, type, tags, nodes; found '{shortened(lines.text(line))}'")
     blocks, solids = [], 0
+    unread: dict[str, int] = {}
     for (kind_number, tags), where in alike.items():
         if kind_number in GMSH_SOLIDS:
             solids += len(where)
+            continue
+        if kind_number in GMSH_SURFACES:
+            unread[str(kind_number)] = unread.get(str(kind_number), 0) + len(where)
             continue
         if kind_number not in GMSH or not 0 <= tags <= 100:
             _unknown_kind(lines, where[0], kind_number)
@@ -325,7 +335,7 @@ def _elements_2(lines: Lines, section: _Section, numbers: IntArray, names: Names
             if tag
         }
         blocks.append(Block(kind, rows[:, 0], nodes, groups))
-    return blocks, solids
+    return blocks, solids, unread
 
 
 def _exact(lines: Lines, section: _Section, count: int, what: str) -> None:
