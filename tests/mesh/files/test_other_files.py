@@ -226,3 +226,27 @@ def test_a_file_in_which_meshio_finds_no_end(tmp_path, monkeypatch):
     (tmp_path / "part.node").write_bytes(b"")
     with pytest.raises(InputError, match=r"^part.node: meshio finds no end in it"):
         ms.mesh.read(tmp_path / "part.node", unit="m")
+
+
+@needs_meshio
+def test_several_zones_are_refused(tmp_path):
+    """meshio drops all but one."""
+    zone = "ZONE N=3, E=1, DATAPACKING=POINT, ZONETYPE=FETRIANGLE\n0 0 0\n1 0 0\n0 1 0\n1 2 3\n"
+    head = 'VARIABLES = "X" "Y" "Z"\n'
+    (tmp_path / "one.tec").write_text(head + zone)
+    assert len(ms.mesh.read(tmp_path / "one.tec", unit="m", second_order=True).elements) == 1
+    (tmp_path / "two.tec").write_text(head + zone + zone)
+    with pytest.raises(InputError, match=r"two.tec: has 2 zones, of which meshio reads one"):
+        ms.mesh.read(tmp_path / "two.tec", unit="m", second_order=True)
+
+
+@needs_meshio
+@pytest.mark.parametrize(("suffix", "read"), [(".obj", "f 1 2 3 4 5"), (".ply", "5 0 1 2 3 4")])
+def test_polygons_of_five_corners_are_refused(tmp_path, suffix, read):
+    points = ["0 0 0", "1 0 0", "2 1 0", "1 2 0", "0 1 0"]
+    ply = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
+    ply += "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    lines = [f"v {point}" for point in points] if suffix == ".obj" else [ply + points[0], *points[1:]]
+    (tmp_path / f"five{suffix}").write_text("\n".join([*lines, read, ""]))
+    with pytest.raises(InputError, match=r"cannot be used: 1 of type polygon"):
+        ms.mesh.read(tmp_path / f"five{suffix}", unit="m", second_order=True)

@@ -6,6 +6,7 @@ import contextlib
 import importlib.util
 import io
 import pathlib
+import re
 import warnings
 from typing import Any
 
@@ -20,6 +21,8 @@ from magshell.units import shortened
 
 _TAGS = ("gmsh:physical", "medit:ref", "cell_tags", "nastran:ref")
 """Cell data that stand for groups, where a format has no names for them."""
+_ZONES = {**dict.fromkeys((".dat", ".tec"), rb"(?im)^\s*ZONE\b"), ".su2": rb"(?im)^\s*NDIME\b"}
+"""What begins a zone of files of which meshio reads one zone."""
 _NEEDED = {**dict.fromkeys(("cgns", "h5m", "hmf", "med"), "h5py"), "exodus": "netCDF4"}
 """Packages without which meshio does not read a format."""
 
@@ -56,6 +59,9 @@ def read_other(path: pathlib.Path, name: str, others: tuple[str, ...], seconds: 
         raise InputError(f"{name}: files '{path.suffix}' are not known. There is: {listed}")
     if needed:
         raise InputError(f"{name}: meshio needs {needed} to read it, which is not installed: pip install {needed}")
+    zones = len(re.findall(_ZONES[path.suffix.lower()], path.read_bytes())) if path.suffix.lower() in _ZONES else 1
+    if zones > 1:
+        raise InputError(f"{name}: has {zones} zones, of which meshio reads one; save them as one")
     return apart(_read, path, name, program="meshio", name=name, seconds=seconds)
 
 
