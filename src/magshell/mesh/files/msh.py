@@ -76,8 +76,7 @@ def _version(content: bytes, name: str) -> str:
         raise InputError(f"{name}: the file is empty")
     head = content[:_HEAD].splitlines()
     start = next((number for number, line in enumerate(head) if line.strip() == b"$MeshFormat"), None)
-    # gmsh takes what begins otherwise for a script, and runs it.
-    if start is None or start + 1 >= len(head) or not content.startswith((b"$MeshFormat", b"$Comments")):
+    if start is None or start + 1 >= len(head):
         raise InputError(
             f"{name}, line 1: not a .msh file of gmsh, which begins with $MeshFormat (found "
             f"'{shortened(head[0].decode('utf-8', 'replace'))}')"

@@ -113,9 +113,12 @@ def _msh(path: pathlib.Path, name: str) -> Contents:
     from magshell.mesh.files.msh import PlainReaderError, read_msh
     from magshell.mesh.files.session import INSTALL, installed
 
+    content = path.read_bytes()
     try:
-        return read_msh(path.read_bytes(), name)
+        return read_msh(content, name)
     except PlainReaderError as error:
+        if not content.startswith((b"$MeshFormat", b"$Comments")):  # a script to gmsh, which runs it
+            raise InputError(f"{name}, line 1: not a .msh file of gmsh, which begins with $MeshFormat") from None
         if not installed():
             raise InputError(f"{error}; or let gmsh read it: {INSTALL}") from None
     from magshell.mesh.files.from_gmsh import read_with_gmsh
