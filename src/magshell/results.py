@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from magshell import __version__, problem
 from magshell.errors import InputError
-from magshell.files import naming, refuse_somebodys, refuse_to_replace, write_atomically
+from magshell.files import first_line, naming, refuse_somebodys, refuse_to_replace, write_atomically
 from magshell.output import checkpoint, step_checks
 from magshell.output.checkpoint import CheckpointWriter, Origin
 from magshell.output.critical import CriticalWriter
@@ -113,8 +113,9 @@ def begun(directory: str | os.PathLike[str]) -> bool:
 
 
 def is_one(directory: pathlib.Path) -> bool:
-    """Whether a folder was made by a run."""
-    return (directory / PROBLEM).is_file() and (directory / checkpoint.FOLDER).is_dir()
+    """Whether a folder was made by a run, with its steps or, where these were removed, its curves."""
+    steps, curves = directory / checkpoint.FOLDER, first_line(directory / "history.csv")
+    return (directory / PROBLEM).is_file() and (steps.is_dir() or curves.startswith("load_factor,B1,B2,B3"))
 
 
 def require_free(source: Problem, directory: pathlib.Path) -> None:

@@ -159,6 +159,8 @@ def test_disk_that_refuses(
     monkeypatch.setattr(HistoryWriter, "converged", full)
     out = tmp_path / "out"
     out.mkdir()
+    (out / "checkpoint").mkdir()
+    (out / "problem.toml").touch()
     (out / "summary.json").write_text("of an earlier run")
     assert main(["run", strip, "--out", str(out)]) == 1
     shown = capsys.readouterr()

@@ -33,6 +33,7 @@ def interrupted(tmp_path_factory: pytest.TempPathFactory) -> Interrupted:
     """Thin cross and pump, Ctrl-C when the first is done; files of an earlier run lie in the folder."""
     directory = tmp_path_factory.mktemp("reproduction")
     (directory / "pump-shapes.png").write_bytes(b"of an earlier run")
+    (directory / "reproduction.csv").write_text("example,quantity,unit,paper,computed,difference_percent,note\n")
     (directory / "mine.png").write_bytes(b"of the user")
     process = subprocess.Popen(
         [sys.executable, "-u", "-m", "magshell", "reproduce", "pump", "thin-cross", "--out", str(directory)],

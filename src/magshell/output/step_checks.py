@@ -62,8 +62,8 @@ def _faults(waypoint: Waypoint, before: Waypoint | None, model: Model) -> Iterat
     yield from _of_shape("slope_increment", slope.increment, (len(model.shell.mesh.points), 10))
     yield from _of_shape("slope_alpha", slope.d_alpha, step.state.alpha.shape)
     if step.balance is not None:
-        for name, values in list(step.balance._asdict().items())[:-2]:
-            yield from _of_shape(f"balance_{name}", values, (3,))
+        for name, values in step.balance._asdict().items():
+            yield from _of_shape(f"balance_{name}", values, () if name.endswith(("_imbalance", "_scale")) else (3,))
     for number, point in enumerate(waypoint.critical_points, start=1):
         yield from _faults_of_critical(point, f"critical{number}_", model)
 

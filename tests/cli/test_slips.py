@@ -1,11 +1,11 @@
-"""No command replaces or removes a file that no earlier run of it wrote; no name gets another format than it says."""
+"""Slips in commands: files of one's own in the way, names that say another format, a run in which nothing moves."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 import pytest
-from problem_files import STRIP
+from problem_files import STRIP, changed
 
 import magshell as ms
 from magshell.cli import main
@@ -142,3 +142,16 @@ def test_saving_a_path(here: Path, results: Path) -> None:
         with pytest.raises(InputError, match="would lose"):
             path.save(name)
     assert (here / "mine/step-0009.vtu").read_bytes() == OWN
+
+
+def test_a_run_in_which_nothing_moves(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Held at every node; and one that moves, of which it is not said."""
+    far, clamp = 'far = { x1 = "20 mm" }\n', 'kind = "clamp"\ngroup = "left"'
+    everywhere = (far, far + "[mesh.node_groups]\nall = { x3 = 0 }\n"), (clamp, clamp.replace("left", "all"))
+    (here / "held.toml").write_text(changed(STRIP, *everywhere))
+    assert main(["run", "held.toml", "--out", "held"]) == 0
+    said = capsys.readouterr().out
+    assert "warning: the supports hold every node" in said
+    assert "warning: nothing moved: the largest displacement of all steps is 0. Check the supports" in said
+    assert main(["run", "strip.toml", "--out", "out"]) == 0
+    assert "warning" not in capsys.readouterr().out
