@@ -48,6 +48,7 @@ def test_roots_of_a_quadratic_problem_with_their_vectors(symmetric):
     roots = roots_nearest_to_zero(matrix, make_solver("superlu"), 4, 20.0)
     assert [pair.value for pair in roots.pairs] == pytest.approx([-0.7, 2.0, -3.0, 5.0], rel=1e-9)
     assert 5.0 <= roots.counted < 9.0
+    assert roots.complete
     for pair, place in zip(roots.pairs, [2, 0, 1, 1], strict=True):
         own = np.abs(right @ pair.vector)
         own[place] /= 1e8
@@ -117,3 +118,15 @@ def test_a_solver_that_counts_no_pivots():
     roots = roots_nearest_to_zero(problem([line(2.0), line(-3.0)])[0], solver, 2, 10.0)
     assert [pair.value for pair in roots.pairs] == pytest.approx([2.0, -3.0], rel=1e-9)
     assert roots.counted is None
+    assert not roots.complete
+
+
+def test_roots_that_are_not_found_are_told(monkeypatch):
+    """With neither guesses nor linear problems in the gaps."""
+    monkeypatch.setattr(eigenproblem._Search, "guesses", lambda self: [])
+    monkeypatch.setattr(eigenproblem._Search, "local", lambda self, s: [])
+    roots = roots_nearest_to_zero(problem([line(2.3), line(-3.0)])[0], make_solver("superlu"), 2, 10.0)
+    assert not roots.pairs
+    assert roots.counted == pytest.approx(2.3, rel=eigenproblem.CLEAR)
+    assert roots.counted < 2.3
+    assert not roots.complete

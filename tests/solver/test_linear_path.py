@@ -102,6 +102,7 @@ def test_a_cantilever_on_edge_tips_over_sideways(width, formula, path):
     loads = [mode.load_factor for mode in found.modes]
     assert loads[0] == pytest.approx(path, rel=6e-3)
     assert loads[1] == pytest.approx(-loads[0], rel=1e-6)
+    assert found.complete
     assert found.counted >= loads[0]
     assert not found.doubts
     mode = found.modes[0].mode

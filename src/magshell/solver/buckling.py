@@ -88,6 +88,8 @@ class Buckling(NamedTuple):
     counted : float or None
         Magnitude of the load factor up to which the negative pivots of the tangent tell of no other multipliers; None:
         the linear solver cannot count them.
+    complete : bool
+        Whether no multiplier of less magnitude than the last mode's is missing, as far as the pivots tell.
     reach : float
         Magnitude of the load factor up to which multipliers are looked for: there the linear path has a strain or a
         rotation (rad) of 0.1. Infinite where the load moves nothing.
@@ -96,6 +98,7 @@ class Buckling(NamedTuple):
     path: Path
     modes: list[BucklingMode]
     counted: float | None
+    complete: bool
     reach: float
 
     @property
@@ -104,16 +107,16 @@ class Buckling(NamedTuple):
         found: list[str] = []
         far = [mode for mode in self.modes if mode.far]
         if far:
-            names = ", ".join(str(mode.number) for mode in far)
+            names = f"mode {far[0].number}" if len(far) == 1 else f"modes {far[0].number} to {far[-1].number}"
             turn, strain = show(max(mode.rotation for mode in far), ANGLE), max(mode.strain for mode in far)
             found.append(
-                f"mode{'s' * (len(far) > 1)} {names}: the part turns by up to {turn} and strains by up to "
+                f"{names}: the part turns by up to {turn} and strains by up to "
                 f"{100.0 * strain:.2g} % before it buckles; the estimate assumes that it hardly moves. "
                 "Follow the path (magshell run)"
             )
         if self.counted is None:
             found.append(f"{self.path.solver_name} counts no negative pivots: a multiplier may have been passed")
-        elif self.modes and self.counted < abs(self.modes[-1].load_factor):
+        elif not self.complete:
             found.append(
                 f"beyond a load factor of ±{self.counted:.6g} the negative pivots of the tangent tell of more "
                 "multipliers than were found"
@@ -121,8 +124,8 @@ class Buckling(NamedTuple):
         elif self.counted >= self.reach:
             found.append(
                 f"no {'other ' * bool(self.modes)}multiplier up to a load factor of ±{self.reach:.6g}, where the "
-                f"linear path turns the part by {show(REACH, ANGLE)} or strains it by {100.0 * REACH:.0f} %, and ends. "
-                "A part that bends at once has none: follow the path (magshell run)"
+                f"linear path turns the part by {show(REACH, ANGLE)} or strains it by {100.0 * REACH:.0f} %, and ends"
+                + ("" if self.modes else ". A part that bends at once has none: follow the path (magshell run)")
             )
         return found
 
@@ -192,4 +195,4 @@ def buckling(
             )
         )
     counted = None if roots.counted is None else roots.counted * line.unit
-    return Buckling(path, found, counted, line.reach * line.unit)
+    return Buckling(path, found, counted, roots.complete, line.reach * line.unit)

@@ -73,10 +73,13 @@ class Roots(NamedTuple):
         Rising in magnitude.
     counted : float or None
         Magnitude of s up to which the negative pivots tell of no others; None where the solver cannot count.
+    complete : bool
+        Whether that is as far as they were looked for. If not, there are more.
     """
 
     pairs: list[Eigenpair]
     counted: float | None
+    complete: bool
 
 
 class NoConvergence(ArithmeticError):
@@ -140,6 +143,7 @@ class _Search:
         first, second = 0.5 * (ahead - back), 0.5 * (ahead + back - 2.0 * self.origin)
         if not (np.any(first.data) or np.any(second.data)):
             return []  # nothing changes
+        del ahead, back
 
         def companion(y: FloatArray) -> FloatArray:
             forces = first @ (self.scale * y[:size]) + second @ (self.scale * y[size:])
@@ -242,7 +246,8 @@ class _Search:
         for one, two in pairwise(range(len(pairs))):  # of two that differ by their sign the positive one first
             if pairs[one].value < 0.0 and abs(pairs[one].value + pairs[two].value) <= SAME * pairs[two].value:
                 pairs[one], pairs[two] = pairs[two], pairs[one]
-        return Roots(pairs, counted)
+        wanted = abs(pairs[-1].value) if len(pairs) == self.wanted else end
+        return Roots(pairs, counted, counted is not None and counted >= wanted)
 
     def complete(self, side: float, end: float) -> float:
         """Find the roots on one side of 0 that the pivots tell of; returns the magnitude up to which all are known."""
