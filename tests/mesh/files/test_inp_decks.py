@@ -135,6 +135,22 @@ def test_sets_of_springs_and_masses():
     }
 
 
+def test_masses_with_a_comma_behind_each(tmp_path):
+    text = (DECKS / "strip_spring.inp").read_text(encoding="utf-8")
+    text += "*ELEMENT, TYPE=MASS, ELSET=masses\n903, 17,\n904, 26,\n*NSET, NSET=heavy, ELSET=masses\n"
+    (tmp_path / "masses.inp").write_text(text, encoding="utf-8")
+    mesh = ms.mesh.read(tmp_path / "masses.inp", "mm")
+    assert mesh.node_groups["heavy"].tolist() == [16, 25]
+    assert "3 elements of type MASS left out" in mesh.origin.changes
+
+
+def test_solids_are_counted_by_element(tmp_path):
+    text = "*NODE\n1, 0\n*ELEMENT, TYPE=C3D10, ELSET=a\n1, 1, 1, 1, 1, 1, 1, 1,\n1, 1, 1\n2, 1,1,1,1,1,1,1,1,1,1\n"
+    (tmp_path / "solid.inp").write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match=r"solid.inp: has 2 solid elements"):
+        ms.mesh.read(tmp_path / "solid.inp", "mm")
+
+
 def test_the_command_lists_the_groups(capsys):
     from magshell.cli import main
 

@@ -94,6 +94,7 @@ BROKEN = {
     "word": ("*NODE\n1, 0, zero, 0\n", "line 2: expected a node number and three coordinates, found '1, 0, zero, 0'"),
     "infinite": ("*NODE\n1, 0, inf, 0\n", "line 2: expected a node number"),
     "underscore": ("*NODE\n1, 1_0, 0, 0\n", "line 2: expected a node number"),
+    "eight fields": ("*NODE\n1, 0, 0, 0, 0, 0, 1, 0\n", "line 2: expected a node number"),
     "broken number": ("*NODE\n1.5, 0, 0, 0\n", "line 2: expected a node number"),
     "twice": (START + "1,1,0,0\n", "line 3: node 1 is given a second time"),
     "too few nodes": (START + "*ELEMENT, TYPE=S4\n1, 1, 1, 1\n", "line 3: the elements of type S4 need 5 numbers each"),

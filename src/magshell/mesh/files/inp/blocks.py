@@ -29,13 +29,15 @@ from magshell.mesh.files.lines import Lines
 from magshell.units import shortened
 
 _LARGEST_SET = 10_000_000
+_NODE_FIELDS = 7
+"""Number, three coordinates, three direction cosines."""
 
 
 def read_nodes(lines: Lines, keyword: Keyword, scope: Scope) -> None:
     """`*NODE`: number and up to three coordinates; direction cosines behind them are not used."""
     given = parameters(lines, keyword, ("NSET", "SYSTEM"))
     found = table(lines, keyword.rows, float)
-    if found is None or found.shape[1] < 2 or (found[:, 0] != np.rint(found[:, 0])).any():
+    if found is None or not 1 < found.shape[1] <= _NODE_FIELDS or (found[:, 0] != np.rint(found[:, 0])).any():
         found = np.array([_node(lines, line) for line in keyword.rows], dtype=np.float64).reshape(-1, 4)
     coordinates = np.zeros((len(found), 3))
     coordinates[:, : found.shape[1] - 1] = found[:, 1:4]
@@ -48,8 +50,8 @@ def read_nodes(lines: Lines, keyword: Keyword, scope: Scope) -> None:
 
 def _node(lines: Lines, line: int) -> list[float]:
     what = "a node number and three coordinates"
-    fields = split(lines.text(line))
-    if not is_whole(fields[0]) or len(fields) > 8:
+    fields = split(lines.text(line).rstrip(", \t"))
+    if not is_whole(fields[0]) or len(fields) > _NODE_FIELDS:
         lines.fail(line, f"expected {what}, found '{shortened(lines.text(line))}'")
     number = whole(lines, line, fields[0], what)
     return [number, *([real(lines, line, field, what) for field in fields[1:4]] + [0.0, 0.0, 0.0])[:3]]
@@ -78,7 +80,7 @@ def read_elements(lines: Lines, keyword: Keyword, scope: Scope) -> None:
         block: Elements | Skipped = _elements(lines, keyword, type_name, kind)
         scope.elements += [block] if isinstance(block, Elements) and len(block.numbers) else []
     else:
-        block = _skipped(lines, keyword, shortened(type_name))
+        block = _skipped(lines, keyword, shortened(type_name), long=kind != "no surface")
         count = len(block.numbers)
         if kind == "solid":
             scope.solids += count
@@ -108,8 +110,8 @@ def _elements(lines: Lines, keyword: Keyword, type_name: str, kind: Kind) -> Ele
     return Elements(type_name, kind, array[:, 0].copy(), array[:, 1:], np.array(keyword.rows, dtype=np.int64)[rows])
 
 
-def _skipped(lines: Lines, keyword: Keyword, type_name: str) -> Skipped:
-    """Number and nodes of elements of any type: a line that ends with a comma goes on."""
+def _skipped(lines: Lines, keyword: Keyword, type_name: str, long: bool) -> Skipped:
+    """Number and nodes of elements of any type; a line of those with many nodes goes on if it ends with a comma."""
     numbers: list[int] = []
     nodes: list[list[int]] = []
     where: list[int] = []
@@ -121,7 +123,7 @@ def _skipped(lines: Lines, keyword: Keyword, type_name: str) -> Skipped:
             nodes.append([])
             where.append(line)
         nodes[-1] += [whole(lines, line, field, "a node number") for field in fields if is_whole(field)]
-        goes_on = lines.every[line][-1:] == b","
+        goes_on = long and lines.every[line][-1:] == b","
     return Skipped(type_name, np.array(numbers, dtype=np.int64), nodes, np.array(where, dtype=np.int64))
 
 

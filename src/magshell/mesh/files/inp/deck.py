@@ -144,7 +144,7 @@ class _Deck:
         what = "the origin and a point on the first axis, then one in the plane of the first and second axes"
         first, second = (reals(self.lines, keyword, row, most, what) for row, most in ((0, 6), (1, 3)))
         self.scope.frame = frame(first, second) if first else None
-        if first and self.scope.frame is None:
+        if len(keyword.rows) > 2 or (first and self.scope.frame is None):
             self.lines.fail(keyword.line, f"these points define no axes; there must be {what}")
 
     def _section(self, keyword: Keyword) -> None:
@@ -163,9 +163,8 @@ class _Deck:
 
     def contents(self) -> Contents:
         """All of it as one mesh."""
-        if not self.instances:
-            self.instances = {name: Placed(part) for name, part in self.parts.items()}
-        else:
+        placed = self.instances or {name: Placed(part) for name, part in self.parts.items()}
+        if self.instances:
             self.notes += [
                 f"part '{shortened(part.name)}' left out, as it has no instance"
                 for name, part in self.parts.items()
@@ -174,7 +173,7 @@ class _Deck:
         if self.constraints:
             listed = ", ".join(f"*{name} (line {line + 1})" for name, line in self.constraints.items())
             self.notes.append(f"constraints are not read: {listed}")
-        return flattened(self.lines, self.instances, self.assembly, self.notes)
+        return flattened(self.lines, placed, self.assembly, self.notes)
 
 
 def read_inp(content: bytes, name: str) -> Contents:

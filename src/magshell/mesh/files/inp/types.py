@@ -19,7 +19,7 @@ _TYPES: tuple[tuple[str, Kind | Other], ...] = (
     (r"((S|SFM3D|M3D|R3D|CPS|CPE|DS)4\w*)", QUAD4),
     (r"(T[23]D3\w*|(B|PIPE|ELBOW)[23]2\w*)", LINE3),
     (r"(T[23]D2\w*|(B|PIPE|ELBOW)[23][13]\w*|FRAME[23]D|RB?[23]D2)", LINE2),
-    (r"((S?C|AC|CIN|CO?H|COH|DC|EC|EMC|F|GK|PC|PD|Q)3D\d*\w*|CCL\d+\w*|CSS8|SC[68]R\w*)", "solid"),
+    (r"((C|AC|CIN|COH|DC|EC|EMC|F|GK|PC|PD|Q)3D\d*\w*|CCL\d+\w*|CSS8|SC[68]R\w*)", "solid"),
     (r"(MASS|ROTARYI|HEATCAP|SPRING\w+|DASHPOT\w+|CONN[23]D2|JOINTC|JOINT[23]D|GAP(UNI|CYL|SPHER)\w*)", "no surface"),
     (r"(DCOUP[23]D|DGAP|DRAG[23]D|ITT\w+|ITS(UNI|CYL)\w*|ASI1|DMASS\d*|DC1D[23]\w*|AC1D[23]\w*|D)", "no surface"),
 )
