@@ -19,6 +19,7 @@ from magshell.materials.law import strain_energy
 from magshell.model import Model
 from magshell.nodal import COLUMNS, COMPONENTS
 from magshell.numbering import columns_of, pattern_of, whole
+from magshell.openblas import allocate_buffers
 from magshell.shell import loops, rotation
 from magshell.shell.bubble import held_energy, hold
 from magshell.shell.element import Layout
@@ -84,6 +85,7 @@ class Discretisation:
     """
 
     def __init__(self, model: Model, ordering: Ordering) -> None:
+        allocate_buffers()
         self.model, self.mesh = model, model.shell.mesh
         mesh = self.mesh
         element, thickness = model.shell.element, model.shell.thickness

@@ -13,7 +13,8 @@ from magshell.cli import buckling, check, examples, mesh, plot, reproduce, run, 
 from magshell.cli.console import complain
 from magshell.cli.letters import write_readably
 from magshell.cli.status import BAD_INPUT, INTERRUPTED, NOT_SOLVED
-from magshell.errors import InputError
+from magshell.errors import InputError, lacks_memory
+from magshell.openblas import allocate_buffers
 
 COMMANDS = {
     "run": run,
@@ -28,6 +29,7 @@ COMMANDS = {
     "reproduce": reproduce,
 }
 
+NO_MEMORY = "the memory of this machine does not suffice; fewer elements need less"
 EXAMPLES = """
 examples:
   magshell examples                       list the built-in problems
@@ -63,6 +65,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = _parser().parse_args(arguments)
     logging.getLogger("magshell.symmetry").addHandler(logging.NullHandler())  # commands say what is broken themselves
     try:
+        allocate_buffers()
         return int(given.command(given))
     except InputError as error:
         complain(str(error))
@@ -74,12 +77,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return NOT_SOLVED
     except OSError as error:
+        if lacks_memory(error):
+            complain(NO_MEMORY)
+            return NOT_SOLVED
         complain(f"{error.filename or 'a file'}: {error.strerror or error}")
         return NOT_SOLVED
-    except MemoryError:
-        complain("the memory of this machine does not suffice; fewer elements need less")
-        return NOT_SOLVED
     except Exception as error:
+        if lacks_memory(error):
+            complain(NO_MEMORY)
+            return NOT_SOLVED
         if given.debug:
             raise
         complain(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import pathlib
 
-from magshell.cli.console import complain, console, say, say_doubts
+from magshell.cli.console import complain, console, say, say_doubts, say_picture
 from magshell.cli.folders import made
 from magshell.cli.status import NOT_SOLVED, SOLVED
 from magshell.errors import SolveError
@@ -61,6 +61,6 @@ def run(given: argparse.Namespace) -> int:
     for doubt in found.doubts:
         say(out, f"warning: {doubt}", style="yellow")
     for picture in write_buckling(found, directory):
-        say(out, f"picture: {picture}")
+        say_picture(out, picture)
     say(out, f"results: {directory} (buckling.csv; buckling/ opens in ParaView)")
     return SOLVED

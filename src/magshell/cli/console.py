@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pathlib
+import sys
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -28,8 +30,20 @@ def say_doubts(on: Console, report: Report) -> None:
         say(on, f"warning: {doubt}", style="yellow")
 
 
+def say_picture(on: Console, picture: pathlib.Path | str) -> None:
+    """Where a picture is, or a warning that says why there is none."""
+    if isinstance(picture, pathlib.Path):
+        say(on, f"picture: {picture}")
+    else:
+        say(on, f"warning: {picture}", style="yellow")
+
+
 def complain(text: str) -> None:
     """An error, one line of it at a time."""
-    on = console(stderr=True)
+    try:
+        on = console(stderr=True)
+    except Exception:  # too little memory to load rich
+        print(*(f"error: {line}" for line in text.splitlines()), sep="\n", file=sys.stderr)
+        return
     for line in text.splitlines():
         say(on, f"error: {line}", style="red")

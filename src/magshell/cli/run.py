@@ -12,12 +12,12 @@ import signal
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from magshell.cli.console import complain, console, say, say_doubts
+from magshell.cli.console import complain, console, say, say_doubts, say_picture
 from magshell.cli.folders import made
 from magshell.cli.memory import say_memory
 from magshell.cli.mesh import say_origin
 from magshell.cli.status import INTERRUPTED, NOT_SOLVED, SOLVED
-from magshell.errors import InputError, SolveError
+from magshell.errors import InputError, SolveError, lacks_memory
 from magshell.units import LENGTH, show
 
 if TYPE_CHECKING:
@@ -149,9 +149,11 @@ def _follow(
         complain(f"{problem.source}: not solved: {error.reason}")
     except BrokenPipeError:
         raise
-    except (KeyboardInterrupt, OSError, MemoryError) as stop:
+    except (KeyboardInterrupt, OSError, MemoryError, ImportError, RuntimeError) as stop:
         kept = len(step_files(directory)) - 1
-        if isinstance(stop, MemoryError) and kept < 0:
+        if not isinstance(stop, (KeyboardInterrupt, OSError)) and not lacks_memory(stop):
+            raise
+        if lacks_memory(stop) and kept < 0:
             complain(f"{problem.source}: {_reason(stop)}")
             return NOT_SOLVED
         if progress.path is None or kept < 0:
@@ -170,7 +172,7 @@ def _follow(
     _say_unstable(out, path)
     _say_still(out, path)
     for picture in draw_pictures(path, directory):
-        say(out, f"picture: {picture}" if isinstance(picture, pathlib.Path) else picture)
+        say_picture(out, picture)
     say(out, f"results: {directory} (history.csv, summary.json; shell.pvd opens in ParaView)")
     return SOLVED if path.converged else NOT_SOLVED
 
@@ -199,10 +201,10 @@ def _terminating() -> Iterator[None]:
 
 def _reason(stop: BaseException) -> str:
     """What stopped a run."""
+    if lacks_memory(stop):
+        return "there is not enough memory"
     if isinstance(stop, OSError):
         return f"{stop.filename or 'a file'}: {stop.strerror or stop}"
-    if isinstance(stop, MemoryError):
-        return "there is not enough memory"
     return "terminated" if isinstance(stop, _Terminated) else "interrupted"
 
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import dataclasses
 import os
 import pathlib
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from magshell.files import csv_line, first_line, refuse_somebodys, write_atomically
 from magshell.output.critical import write_mode
-from magshell.output.rendering import RenderingUnavailable
+from magshell.output.rendering import attempted
 from magshell.output.shape import draw_shape
 from magshell.solver.path import Step
 
@@ -49,7 +50,7 @@ def write_buckling(buckling: Buckling, directory: str | os.PathLike[str]) -> lis
     Returns
     -------
     list of pathlib.Path or str
-        The pictures; a sentence in place of one that this machine cannot draw.
+        The pictures; a sentence that says why in place of one that failed.
 
     Raises
     ------
@@ -62,25 +63,23 @@ def write_buckling(buckling: Buckling, directory: str | os.PathLike[str]) -> lis
     folder = pathlib.Path(directory)
     for old in (folder / "buckling").glob("mode-[0-9][0-9]*.*"):
         old.unlink(missing_ok=True)
-    rows, pictures = [csv_line(HEADING)], list[pathlib.Path | str]()
+    rows = [csv_line(HEADING)]
     for mode in buckling.modes:
         name = f"buckling/mode-{mode.number:02d}.vtu"
         write_mode(folder / name, buckling.path.discretisation, mode)
         numbers = [repr(float(value)) for value in (mode.load_factor, *mode.flux_density)]
         rows.append(csv_line([str(mode.number), *numbers, name, repr(float(mode.strain)), repr(float(mode.rotation))]))
-        try:
-            pictures.append(_draw(buckling, mode, (folder / name).with_suffix(".png")))
-        except RenderingUnavailable as unavailable:
-            pictures.append(str(unavailable))
     write_atomically(folder / TABLE, "".join(rows).encode())
-    return pictures
+    return [
+        attempted(partial(_draw, buckling, mode), folder / f"buckling/mode-{mode.number:02d}.png")
+        for mode in buckling.modes
+    ]
 
 
-def _draw(buckling: Buckling, mode: BucklingMode, file: pathlib.Path) -> pathlib.Path:
+def _draw(buckling: Buckling, mode: BucklingMode, file: pathlib.Path) -> None:
     size = SHOWN * buckling.path.model.shell.mesh.size
     shape = mode.state.moved(size * mode.mode, np.zeros_like(mode.state.alpha))
     step = Step(
         mode.number, mode.load_factor, shape, 0, 0.0, None, 0.0, mode.stage, mode.flux_density, np.zeros(0), None
     )
     draw_shape(dataclasses.replace(buckling.path, steps=[step]), file, color="u")
-    return file

@@ -7,7 +7,7 @@ import pathlib
 from typing import TYPE_CHECKING
 
 from magshell.output.curve import draw_curve
-from magshell.output.rendering import RenderingUnavailable
+from magshell.output.rendering import RenderingUnavailable, attempted
 from magshell.output.shape import draw_shape
 
 if TYPE_CHECKING:
@@ -28,21 +28,11 @@ def draw_pictures(path: Path, directory: str | os.PathLike[str]) -> list[pathlib
     Returns
     -------
     list of pathlib.Path or str
-        The files; for a picture that this machine cannot draw, a sentence that says why and what to install
-        (one left by an earlier run is then removed).
-
-    Raises
-    ------
-    OSError
-        The disk refuses; the message names the file.
+        The files; in place of a picture that failed, a sentence that says why and what to do (one left by an earlier
+        run is then removed).
     """
-    results: list[pathlib.Path | str] = []
-    for draw, name in ((draw_curve, "curve.png"), (draw_shape, "shape.png")):
-        file = pathlib.Path(directory) / name
-        try:
-            draw(path, file)
-            results.append(file)
-        except RenderingUnavailable as unavailable:
-            file.unlink(missing_ok=True)
-            results.append(str(unavailable))
-    return results
+    folder = pathlib.Path(directory)
+    return [
+        attempted(lambda file: draw_curve(path, file), folder / "curve.png"),
+        attempted(lambda file: draw_shape(path, file), folder / "shape.png"),
+    ]

@@ -15,7 +15,7 @@ from magshell.mesh.files import FileMesh
 from magshell.mesh.geometry import centres, unit
 from magshell.mesh.quality import worst
 from magshell.nodal import width
-from magshell.problem import load_report, remanence_report, schema, symmetry_report
+from magshell.problem import load_report, remanence_report, schema, symmetry_report, triangle_report
 from magshell.problem.building import Problem
 from magshell.problem.fields import DIMENSION_OF_FIELD
 from magshell.problem.load_report import Strength
@@ -295,6 +295,7 @@ def _doubts(problem: Problem, figures: _Figures, strong: Strength) -> Iterator[s
     yield from symmetry_report.doubts(problem)
     if problem.model.constraints.fixed[:, :3].all():
         yield "the supports hold every node: the displacement is given everywhere, nothing is left to move"
+    yield from triangle_report.doubts(problem.model.shell.mesh, figures.thickness, figures.radius)
     worst_corner = worst(problem.model.shell.mesh)["scaled_jacobian"]
     if worst_corner.value < 0.2:
         yield f"element {worst_corner.element} is badly shaped (scaled Jacobian {worst_corner.value:.2g})"

@@ -17,6 +17,7 @@ import scipy.sparse as sp
 from magshell.linalg import nested_dissection
 from magshell.model import Model
 from magshell.numbering import columns_of
+from magshell.openblas import allocate_buffers
 
 # Measured by benchmarks/memory.py: bytes of the program itself, for each element, and for each entry of the factors.
 PROGRAM, PER_ELEMENT, PER_ENTRY = 300e6, 100e3, 30.0
@@ -44,6 +45,7 @@ def need_of(model: Model) -> Need:
     """What a solve of a model will take."""
     from scipy.sparse.linalg import splu
 
+    allocate_buffers()
     mesh, nodes = model.shell.mesh, len(model.shell.mesh.points)
     elements, corners = mesh.elements.shape
     starts = np.arange(0, elements * corners + 1, corners)
