@@ -26,7 +26,7 @@ from magshell.arrays import FloatArray
 from magshell.assembly import Discretisation
 from magshell.loading import Loading
 from magshell.magnetics import law
-from magshell.shell.evaluation import evaluate
+from magshell.shell.evaluation import evaluate, plane_stress_stretch
 from magshell.shell.state import State
 
 # Angle (degrees) turned within an element: what is safe, and beyond which the mesh is a likely cause.
@@ -38,9 +38,13 @@ SQUASHED = 0.5
 
 
 class Turn(NamedTuple):
-    """The largest angle (degrees) that the shell turns along an edge of an element, from one node to another."""
+    """The largest angle (degrees) that the shell turns along an edge of an element, from one node to another.
+
+    `undeformed` is that of the same edge before.
+    """
 
     angle: float
+    undeformed: float
     element: int
     nodes: tuple[int, int]
 
@@ -79,7 +83,9 @@ class Measures(NamedTuple):
 
 def measure(discretisation: Discretisation, state: State, loading: Loading) -> Measures:
     """Bending per element, det F and the couple in a state."""
-    F = evaluate(discretisation.body, state).F
+    body, material = discretisation.body, discretisation.model.shell.material
+    φ = plane_stress_stretch(body, state, material) if body.plane_stress else None
+    F = evaluate(body, state, φ).F
     determinants = np.linalg.det(F).min(axis=(1, 2))
     worst = int(determinants.argmin())
     return Measures(
@@ -125,9 +131,10 @@ def _causes(discretisation: Discretisation, measured: Measures) -> Iterator[str]
         )
     if turn.angle > SAFE:
         one, other = turn.nodes
+        before = f" ({turn.undeformed:.0f}° before)" if turn.undeformed > 1.0 else ""
         yield (
             f"the mesh is too coarse for the bending: {_place(discretisation, turn.element)} turns by "
-            f"{turn.angle:.0f}° from node {one} to node {other}, where {SAFE:.0f}° are safe. Take "
+            f"{turn.angle:.0f}°{before} from node {one} to node {other}, where {SAFE:.0f}° are safe. Take "
             f"{np.ceil(2.0 * turn.angle / SAFE) / 2.0:g} times as many elements, or more, in that direction."
         )
     if squash.determinant < SQUASHED:
@@ -146,14 +153,23 @@ def _figures(measured: Measures) -> str:
 
 def _turn(discretisation: Discretisation, state: State) -> Turn:
     elements = discretisation.mesh.elements
-    position = discretisation.mesh.points + state.u
-    first, second = elements[:, :4], np.roll(elements[:, :4], -1, axis=1)
-    a, b, middle = position[first], position[second], position[elements[:, 4:]]
-    start, end = 4.0 * middle - 3.0 * a - b, 3.0 * b + a - 4.0 * middle
-    directors = discretisation.normals + state.w
-    angles = np.maximum(_angles(start, end), _angles(directors[first], directors[second]))
+    angles = _angles_of_edges(discretisation, state)
+    before = _angles_of_edges(discretisation, discretisation.undeformed())
     element, edge = (int(index) for index in np.unravel_index(angles.argmax(), angles.shape))
-    return Turn(float(angles[element, edge]), element, (int(first[element, edge]), int(second[element, edge])))
+    nodes = int(elements[element, edge]), int(elements[element, (edge + 1) % 4])
+    return Turn(float(angles[element, edge]), float(before[element, edge]), element, nodes)
+
+
+def _angles_of_edges(discretisation: Discretisation, state: State) -> FloatArray:
+    """Angle (elements, 4) that the shell turns along each edge, degrees."""
+    elements = discretisation.mesh.elements
+    position, director = discretisation.mesh.points + state.u, discretisation.normals + state.w
+    first, second, middle = elements[:, :4], np.roll(elements[:, :4], -1, axis=1), elements[:, 4:]
+    chord, rise = (
+        position[second] - position[first],
+        4.0 * position[middle] - 2.0 * (position[first] + position[second]),
+    )
+    return np.maximum(_angles(chord + rise, chord - rise), _angles(director[first], director[second]))
 
 
 def _angles(one: FloatArray, other: FloatArray) -> FloatArray:
