@@ -7,6 +7,7 @@ on meshes that nobody checked for them; a part of the paths cannot be followed t
 from __future__ import annotations
 
 import math
+import pathlib
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
@@ -26,6 +27,10 @@ COARSE, CHECKED, REFINED = "mesh too coarse for the bending", 6, 2
 """A cause that is put to the test: so many of its models again, with so many times the elements in both directions."""
 
 MU0 = 4e-7 * math.pi
+KNOWN = ("unfinished-015", "unfinished-081", "unfinished-122", "stopped-039", "stopped-061", "stopped-091",
+         "stopped-111", "stopped-159")  # fmt: skip
+"""Problem files of another generator like this one, whose paths once ended without a cause, or not at all."""
+CASES = pathlib.Path(__file__).parents[2] / "tests" / "solver" / "cases"
 CAUSES = {
     "couple at the limit of the micro-rotation": "reaches the limit of what the micro-rotation",
     COARSE: "the mesh is too coarse for the bending",
@@ -219,18 +224,29 @@ class Clock(ms.Observer):
 
 def ending_of(which: int, refined: int = 1, limit: float = LIMIT) -> Ending:
     """Follow the path of a random model."""
-    drawn, clock, reason = draw(which, refined), Clock(limit), ""
+    return ending(draw(which, refined), limit)
+
+
+def known(name: str) -> Ending:
+    """Follow the path of one of `KNOWN`."""
+    problem = ms.problem.load(str(CASES / f"{name}.toml"))
+    return ending(Drawn(problem.file.title, problem.model))
+
+
+def ending(drawn: Drawn, limit: float = LIMIT) -> Ending:
+    """Follow the path of a model."""
+    clock, reason = Clock(limit), ""
     try:
         ms.solve(drawn.model, observers=[clock])
-        ending = ENDED
+        found = ENDED
     except ms.SolveError as failure:
         reason = failure.reason
-        ending = next((cause for cause, said in CAUSES.items() if said in reason), UNKNOWN)
+        found = next((cause for cause, said in CAUSES.items() if said in reason), UNKNOWN)
     except OutOfTime:
-        ending = UNFINISHED
+        found = UNFINISHED
     path, last = clock.path, clock.path.steps[-1]
     reached = (last.stage + max(last.load_factor, 0.0)) / len(drawn.model.stages)
-    return Ending(drawn.words, ending, reason, reached, len(path.steps) - 1, path.solves, path.cuts, clock.seconds)
+    return Ending(drawn.words, found, reason, reached, len(path.steps) - 1, path.solves, path.cuts, clock.seconds)
 
 
 def study(runs: Runs) -> Findings:
@@ -251,15 +267,25 @@ def study(runs: Runs) -> Findings:
         f"The first {len(coarse)} models whose mesh is said to be too coarse, with {REFINED} times as many elements in "
         f"both directions: {further} get further, {ended} of them to the end."
     )
-    return Findings({"random": table(head, rows), "random-refined": words})
+    others = {name: _stored(runs, name, lambda name=name: known(name)) for name in KNOWN}
+    known_rows = [
+        [f"`{name}`", one.ending, f"{100.0 * one.reached:.3g}", number(one.cpu, 2), str(one.solves)]
+        for name, one in others.items()
+    ]
+    known_head = ["Model", "Path ends with", "Reached (%)", "CPU s", "Linear solves"]
+    blocks = {"random": table(head, rows), "random-refined": words, "random-known": table(known_head, known_rows, 2)}
+    return Findings(blocks)
 
 
 def _kept(runs: Runs, which: int, refined: int = 1) -> Ending:
     name = f"random {which}" + f", {refined} times as fine" * (refined > 1)
+    return _stored(runs, name, lambda: ending_of(which, refined))
 
+
+def _stored(runs: Runs, name: str, make: Callable[[], Ending]) -> Ending:
     def solved() -> dict[str, Any]:
-        ending = ending_of(which, refined)
-        print(f"  {name}: {ending.words}: {ending.ending}, {ending.solves} solves, {ending.cpu:.1f} s", flush=True)
-        return asdict(ending)
+        found = make()
+        print(f"  {name}: {found.words}: {found.ending}, {found.solves} solves, {found.cpu:.1f} s", flush=True)
+        return asdict(found)
 
     return Ending(**runs.store.get(name, solved))
