@@ -7,7 +7,7 @@ import re
 import pytest
 
 from magshell import Observer, Settings, solve
-from magshell.linalg.solver import SuperLU
+from magshell.linalg.multifrontal.solver import Multifrontal
 from solver.models import Record, contents, strip
 
 
@@ -42,13 +42,13 @@ def test_iterations_are_numbered_and_counted() -> None:
 @pytest.mark.parametrize("first_step", [0.01, 1.0])
 def test_every_factorisation_is_counted(monkeypatch: pytest.MonkeyPatch, first_step: float) -> None:
     """Those of cut steps, and those that only give the path's direction, included."""
-    factorise, counted = SuperLU.factorise, []
+    factorise, counted = Multifrontal.factorise, []
 
     def counting(solver, matrix):
         counted.append(matrix.shape)
         factorise(solver, matrix)
 
-    monkeypatch.setattr(SuperLU, "factorise", counting)
+    monkeypatch.setattr(Multifrontal, "factorise", counting)
     path = solve(strip(), Settings(first_step=first_step))
     assert path.solves == path.summary["iterations"] == len(counted)
 

@@ -24,7 +24,7 @@ def memory_line(needed: float, free: float | None) -> str:
 
 def say_memory(on: Console, problem: Problem) -> None:
     """The need of a large solve; warnings where it will fail."""
-    from magshell.linalg.solver import MOST_ENTRIES
+    from magshell.linalg.superlu import MOST_ENTRIES
     from magshell.solver.memory import memory_free, need_of
 
     if len(problem.model.shell.mesh.elements) < FEW_ELEMENTS:

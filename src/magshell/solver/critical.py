@@ -19,11 +19,11 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.assembly import Assembly
-from magshell.linalg import SingularMatrix
+from magshell.linalg import Factorisation, SingularMatrix
 from magshell.shell.state import State
 from magshell.solver.constraints import Metric, Sphere
 from magshell.solver.newton import Solution, StepFailure, System, Trial, newton
-from magshell.solver.track import Point, point_at, trial_at
+from magshell.solver.track import Point, factors_at, point_at, trial_at
 
 LIMIT_POINT, BIFURCATION = "limit point", "bifurcation"
 # Of a step: accuracy of a limit point along it, and the distances from which a bifurcation is approached.
@@ -111,13 +111,14 @@ class _Search:
         self.before, self.after = before, after
         self.length = after.arc_length - before.arc_length
         self.known: dict[float, Point] = {}
+        self.factors: Factorisation | None = None
 
     def seen(self, distance: float) -> Point:
         """The point at a distance, which may be one that was solved before."""
         return self.known[distance] if distance in self.known else self.point(distance)
 
     def point(self, distance: float) -> Point:
-        """The point of the path at a distance from the first; its tangent, of its own stresses, is left factorised."""
+        """The point of the path at a distance from the first; `factors` are of its tangent, with its own stresses."""
         system, before = self.system, self.before
         state, load_factor, along = before.state, before.load_factor, before.slope.direction
         if distance > 0.0:
@@ -127,8 +128,10 @@ class _Search:
             found = newton(system, trial, sphere, lambda *heard: self.report(trial, *heard)).trial
             state, load_factor = found.state, found.load_factor
         own = self.own(state, load_factor)
-        solution = Solution(own, system.assemble(own), [0.0], None)
-        point = point_at(system, self.metric, solution, before.arc_length + distance, along)
+        solution = Solution(own, system.assemble(own), [0.0], None, None)
+        self.factors = None
+        self.factors = factors_at(system, self.metric, solution, along)
+        point = point_at(system, self.metric, solution, self.factors, before.arc_length + distance, along)
         self.known[distance] = point
         return point
 
@@ -184,7 +187,8 @@ class _Search:
     def least_eigenvalue(self, distance: float, first: int | None) -> float:
         """Of the tangent at a distance; positive where it has the first number of negative pivots."""
         pivots = self.point(distance).negative_pivots
-        size = abs(self.system.linear_solver.smallest_eigenpair()[0])
+        assert self.factors is not None
+        size = abs(self.factors.smallest_eigenpair()[0])
         return size if pivots == first else -size
 
     def between(self, below: float, above: float, at: float) -> Found:
@@ -199,8 +203,7 @@ class _Search:
         """The direction in which a tangent does least."""
         assert assembly.matrix is not None
         try:
-            self.system.linear_solver.factorise(assembly.matrix)
-            direction = self.system.linear_solver.smallest_eigenpair()[1]
+            direction = self.system.linear_solver.factorise(assembly.matrix).smallest_eigenpair()[1]
         except SingularMatrix as singular:
             direction = singular.null_vector
         return normalised(self.system.discretisation.expand(direction))
@@ -211,7 +214,8 @@ class _Search:
         near = max(distance - margin, 0.0), min(distance + margin, self.length)
         sides = self.seen(near[0]).negative_pivots, self.seen(near[1]).negative_pivots
         point = self.point(distance)
-        mode = self.system.discretisation.expand(self.system.linear_solver.smallest_eigenpair()[1])
+        assert self.factors is not None
+        mode = self.system.discretisation.expand(self.factors.smallest_eigenpair()[1])
         return Found(LIMIT_POINT, point, normalised(mode), sides)
 
 

@@ -37,8 +37,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from magshell.arrays import FloatArray
-from magshell.linalg import LinearSolver, SingularMatrix
-from magshell.linalg.solver import equilibration
+from magshell.linalg import Factorisation, LinearSolver, SingularMatrix
+from magshell.linalg.factorisation import scaled
 
 # Guesses beyond those wanted, as complex ones are among them; eigenpairs of the linear problem in a gap.
 SPARE, LOCAL = 6, 6
@@ -131,9 +131,9 @@ class _Search:
     def start(self) -> None:
         """K(0), its scale, and its pivots."""
         self.origin = self.matrix(0.0)
-        self.scale = equilibration(self.origin)
-        self.solver.factorise(self.origin)
-        self.counts[0.0] = self.solver.negative_pivots()
+        self.scale = scaled(self.origin).scale
+        self.factors = self.solver.factorise(self.origin)
+        self.counts[0.0] = self.factors.negative_pivots()
 
     # -- guesses -------------------------------------------------------------------------------------------------
 
@@ -147,7 +147,7 @@ class _Search:
 
         def companion(y: FloatArray) -> FloatArray:
             forces = first @ (self.scale * y[:size]) + second @ (self.scale * y[size:])
-            return np.concatenate([-self.solver.solve(forces) / self.scale, y[:size]])
+            return np.concatenate([-self.factors.solve(forces) / self.scale, y[:size]])
 
         pairs = self._eigenpairs(companion, 2 * size, self.wanted + SPARE)
         self.farthest = max((abs(pair.value) for pair in pairs), default=0.0)
@@ -158,10 +158,10 @@ class _Search:
         self.searches += 1
         width = WIDTH * abs(s)
         slope = (self.matrix(s + width) - self.matrix(s - width)) / (2.0 * width)
-        self.factorised(s)
+        factors = self.factorised(s)
 
         def inverse(y: FloatArray) -> FloatArray:
-            return -self.solver.solve(slope @ (self.scale * y)) / self.scale
+            return -factors.solve(slope @ (self.scale * y)) / self.scale
 
         pairs = self._eigenpairs(inverse, self.scale.size, LOCAL)
         return [pair._replace(value=s + pair.value) for pair in pairs]
@@ -185,12 +185,12 @@ class _Search:
 
     # -- refinement ----------------------------------------------------------------------------------------------
 
-    def factorised(self, s: float) -> None:
-        """Factorise K(s), or K next to s where it is singular."""
+    def factorised(self, s: float) -> Factorisation:
+        """Factors of K(s), or of K next to s where it is singular."""
         try:
-            self.solver.factorise(self.matrix(s))
+            return self.solver.factorise(self.matrix(s))
         except SingularMatrix:
-            self.solver.factorise(self.matrix((1.0 + SAME) * s))
+            return self.solver.factorise(self.matrix((1.0 + SAME) * s))
 
     def refined(self, guess: Eigenpair) -> Eigenpair | None:
         """The root next to a guess, whose vector is of scaled unknowns; None: the iteration finds none."""
@@ -200,15 +200,15 @@ class _Search:
             width = WIDTH * abs(s)
             change = (self.matrix(s + width) @ vector - self.matrix(s - width) @ vector) / (2.0 * width)
             try:
-                self.solver.factorise(self.matrix(s))
+                factors = self.solver.factorise(self.matrix(s))
             except SingularMatrix as singular:
                 return Eigenpair(s, singular.null_vector)
-            ahead = self.solver.solve(change)
+            ahead = factors.solve(change)
             step = -float(change @ vector) / float(change @ ahead)
             if not np.isfinite(step):
                 return None
             if abs(step) > CLEAR * abs(s):
-                self.counts[s] = self.solver.negative_pivots()
+                self.counts[s] = factors.negative_pivots()
             s, vector = s + step, ahead / np.linalg.norm(ahead / self.scale)
             size = abs(step / s)
             if size <= TOLERANCE or (size <= ROUND_OFF and size > 0.1 * sizes[-1]):
@@ -309,6 +309,5 @@ class _Search:
     def count(self, s: float) -> int | None:
         """Negative pivots of K(s)."""
         if s not in self.counts:
-            self.factorised(s)
-            self.counts[s] = self.solver.negative_pivots()
+            self.counts[s] = self.factorised(s).negative_pivots()
         return self.counts[s]

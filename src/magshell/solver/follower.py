@@ -17,7 +17,7 @@ from magshell.solver.goals import Goal, LoadGoal, ProbeGoal, goals_of
 from magshell.solver.newton import Solution, StepFailure, System, Trial, newton
 from magshell.solver.path import Path, Step
 from magshell.solver.starts import Start, start_of
-from magshell.solver.track import Direction, Point, Slope, arc, crossing, known, point_at, trial_at
+from magshell.solver.track import Direction, Point, Slope, arc, crossing, factors_at, known, point_at, trial_at
 from magshell.solver.waypoint import Waypoint
 
 GROWTH, CUT = 2.5, 0.35
@@ -121,8 +121,10 @@ class Follower:
         """The first point of a stage, and its state as a solution."""
         state = start.state
         trial = Trial(state, 0.0, self.discretisation.stresses_at(state))
-        solution = Solution(trial, self.system.assemble(trial), [0.0], None)
-        point = point_at(self.system, self.metric, solution, start.arc_length, (np.zeros_like(state.u), 1.0))
+        solution = Solution(trial, self.system.assemble(trial), [0.0], None, None)
+        along: Direction = np.zeros_like(state.u), 1.0
+        factors = factors_at(self.system, self.metric, solution, along)
+        point = point_at(self.system, self.metric, solution, factors, start.arc_length, along)
         if start.mode is not None:
             length = self.metric.norm(start.mode[:, :3], 0.0)
             slope = Slope(start.mode / length, np.zeros_like(state.alpha), 0.0)
@@ -221,7 +223,8 @@ class Follower:
             solution = newton(self.system, trial, attempt.constraint, lambda *heard: self._report(trial, *heard))
             found = solution.trial
             chord: Direction = found.state.u - last.state.u, found.load_factor - last.load_factor
-            point = point_at(self.system, self.metric, solution, 0.0, chord)
+            factors = factors_at(self.system, self.metric, solution, chord)
+            point = point_at(self.system, self.metric, solution, factors, 0.0, chord)
             length = arc(self.metric, chord, last.slope, point.slope)
             point = point._replace(arc_length=last.arc_length + length)
             missed: Direction = found.state.u - trial.state.u, found.load_factor - trial.load_factor

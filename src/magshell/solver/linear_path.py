@@ -26,7 +26,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from magshell.assembly import InvertedElement
-from magshell.linalg.solver import equilibration
+from magshell.linalg.factorisation import scaled
 from magshell.loading import Loading
 from magshell.materials.law import Material, strain_energy
 from magshell.shell.evaluation import evaluate, micropolar_stretch, plane_stress_stretch
@@ -63,7 +63,7 @@ class LinearPath:
         discretisation = system.discretisation
         trial = Trial(state, 0.0, discretisation.stresses_at(state))
         self._assembly = discretisation.assemble(state, system.course.at(0.0), trial.stresses)
-        factorise(system, self._assembly)
+        self._factors = factorise(system, self._assembly)
         self.unit = 1.0
         for _ in range(2):  # twice: in a unit that suits the load, no digits are lost beside forces that are there
             self._advance(trial.stresses)
@@ -108,7 +108,7 @@ class LinearPath:
         discretisation, course = self.system.discretisation, self.system.course
         rate = Loading(*(self.unit * one for one in course.rate(0.0)))
         direction = discretisation.load_direction(self.state, course.at(0.0), rate, stresses, self._assembly)
-        solution = self.system.linear_solver.solve(direction)
+        solution = self._factors.solve(direction)
         self._increment = discretisation.expand(solution, discretisation.imposed(rate.held))
         self._d_alpha = discretisation.recover(self._increment) - discretisation.recover(np.zeros_like(self._increment))
 
@@ -144,7 +144,7 @@ class LinearPath:
     def _fit(self) -> None:
         """Make the unit one over which the loads change the tangent little, but not only by round-off."""
         start = self.tangent(0.0)
-        scale = equilibration(start)
+        scale = scaled(start).scale
         columns = np.repeat(scale, np.diff(start.indptr))
         for _ in range(PASSES):
             try:

@@ -15,7 +15,7 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.assembly import Assembly, Discretisation, InvertedElement
-from magshell.linalg import LinearSolver, SingularMatrix
+from magshell.linalg import Factorisation, LinearSolver, SingularMatrix
 from magshell.loading import Course
 from magshell.shell.loops import Stresses
 from magshell.shell.state import State
@@ -55,13 +55,16 @@ class Solution(NamedTuple):
     residuals : list of float
         The worst relative one before each iteration and at the end.
     increment : ndarray or None, shape (nodes, 10)
-        The last one: this far from the state is that of the tangent which is factorised. None: none is.
+        The last one: this far from the state is that of the tangent which was factorised.
+    factors : Factorisation or None
+        Of that tangent; None: none was needed.
     """
 
     trial: Trial
     assembly: Assembly
     residuals: list[float]
     increment: FloatArray | None
+    factors: Factorisation | None
 
     @property
     def solves(self) -> int:
@@ -83,14 +86,14 @@ class System(NamedTuple):
             trial.state, self.course.at(trial.load_factor), trial.stresses if self.settings.mixed_tangent else None
         )
 
-    def per_load(self, trial: Trial, assembly: Assembly) -> FloatArray:
-        """Increment (nodes, 10) per load factor, by the tangent of the assembly, which is factorised."""
+    def per_load(self, trial: Trial, assembly: Assembly, factors: Factorisation) -> FloatArray:
+        """Increment (nodes, 10) per load factor, by the factors of a tangent."""
         discretisation, rate = self.discretisation, self.course.rate(trial.load_factor)
         stresses = trial.stresses if self.settings.mixed_tangent else None
         direction = discretisation.load_direction(
             trial.state, self.course.at(trial.load_factor), rate, stresses, assembly
         )
-        return discretisation.expand(self.linear_solver.solve(direction), discretisation.imposed(rate.held))
+        return discretisation.expand(factors.solve(direction), discretisation.imposed(rate.held))
 
 
 def newton(
@@ -109,6 +112,7 @@ def newton(
     discretisation, settings = system.discretisation, system.settings
     residuals: list[float] = []
     increment: FloatArray | None = None
+    factors: Factorisation | None = None
     try:
         assembly = system.assemble(trial)
     except InvertedElement as inverted:
@@ -120,18 +124,19 @@ def newton(
         if not np.isfinite(residual):
             raise StepFailure("the residual is not finite")
         if residual <= settings.tolerance or _stalled(residuals):
-            return Solution(trial, assembly, residuals, increment)
+            return Solution(trial, assembly, residuals, increment, factors)
         if len(residuals) > settings.max_iterations:
             raise StepFailure(
                 f"no convergence in {settings.max_iterations} iterations (residual of {kind}: {residual:.1e})"
             )
         if len(residuals) > 6 and residual > 1e3 * min(residuals):
             raise StepFailure(f"the iteration diverges (residual of {kind}: {residual:.1e})")
-        factorise(system, assembly)
-        increment = discretisation.expand(system.linear_solver.solve(assembly.right_side))
+        factors = None  # two sets of factors at a time would be twice the memory
+        factors = factorise(system, assembly)
+        increment = discretisation.expand(factors.solve(assembly.right_side))
         d_load = 0.0
         if constraint is not None:
-            per_load = system.per_load(trial, assembly)
+            per_load = system.per_load(trial, assembly, factors)
             try:
                 d_load = constraint.d_load(trial.state, trial.load_factor, increment, per_load)
             except NoRoot as miss:
@@ -161,7 +166,7 @@ def _stalled(residuals: list[float]) -> bool:
     return len(residuals) > 2 and max(residuals[-3:]) < ROUND_OFF and residuals[-1] > 0.1 * residuals[-3]
 
 
-def factorise(system: System, assembly: Assembly) -> None:
+def factorise(system: System, assembly: Assembly) -> Factorisation:
     """Factorise the tangent.
 
     Raises
@@ -171,7 +176,7 @@ def factorise(system: System, assembly: Assembly) -> None:
     """
     assert assembly.matrix is not None
     try:
-        system.linear_solver.factorise(assembly.matrix)
+        return system.linear_solver.factorise(assembly.matrix)
     except SingularMatrix as singular:
         direction = system.discretisation.expand(singular.null_vector)
         raise StepFailure(_free_direction(system.discretisation, direction)) from None

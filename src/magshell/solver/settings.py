@@ -25,8 +25,8 @@ class Settings:
         Length of a step, displacements over the body's size, below which the solve gives up.
     mixed_tangent : bool
         Mixed-integration-point Newton (few, large steps); False: the plain one.
-    linear_solver : {"superlu", "pardiso"}
-        The second needs an extra.
+    linear_solver : {"multifrontal", "superlu", "pardiso"}
+        The last needs an extra.
     """
 
     tolerance: float = 1e-9
@@ -36,7 +36,7 @@ class Settings:
     smallest_step: float = 1e-6
     largest_step: float = 1.0
     mixed_tangent: bool = True
-    linear_solver: str = "superlu"
+    linear_solver: str = "multifrontal"
 
     def __post_init__(self) -> None:
         for entry in fields(self):

@@ -14,6 +14,7 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.assembly import Discretisation
+from magshell.linalg import Factorisation
 from magshell.loading import Course
 from magshell.shell.loops import Stresses
 from magshell.shell.state import State
@@ -147,29 +148,42 @@ def crossing(
     return longest * float(min(inside)) if inside else None
 
 
-def point_at(system: System, metric: Metric, solution: Solution, arc_length: float, along: Direction) -> Point:
-    """The point of a converged state, with the slope that goes along a direction.
+def factors_at(system: System, metric: Metric, solution: Solution, along: Direction) -> Factorisation:
+    """Factors of the tangent at a converged state.
 
-    The tangent of the last iteration serves where the last increment was small beside that direction.
+    Those of the last iteration serve where the last increment was small beside a direction.
 
     Raises
     ------
     StepFailure
-        The tangent is singular, or nothing changes with the load factor.
+        The tangent is singular.
+    """
+    last = np.inf if solution.increment is None else metric.norm(solution.increment[:, :3], 0.0)
+    if solution.factors is not None and last <= CLOSE * metric.norm(*along):
+        return solution.factors
+    return factorise(system, solution.assembly)
+
+
+def point_at(
+    system: System, metric: Metric, solution: Solution, factors: Factorisation, arc_length: float, along: Direction
+) -> Point:
+    """The point of a converged state, with the slope that goes along a direction.
+
+    Raises
+    ------
+    StepFailure
+        Nothing changes with the load factor.
     """
     trial, discretisation = solution.trial, system.discretisation
-    last = np.inf if solution.increment is None else metric.norm(solution.increment[:, :3], 0.0)
-    if last > CLOSE * metric.norm(*along):
-        factorise(system, solution.assembly)
-    negative = system.linear_solver.negative_pivots()
-    per_load = system.per_load(trial, solution.assembly)
+    per_load = system.per_load(trial, solution.assembly, factors)
     d_alpha = discretisation.recover(per_load) - discretisation.recover(np.zeros_like(per_load))
     length = metric.norm(per_load[:, :3], 1.0)
     if not np.isfinite(length):
         raise StepFailure("the tangent is singular at the converged state")
     side = -1.0 if metric.product((per_load[:, :3], 1.0), along) < 0.0 else 1.0
     slope = Slope(side / length * per_load, side / length * d_alpha, side / length)
-    return Point(arc_length, trial.load_factor, trial.state, slope, discretisation.stresses_at(trial.state), negative)
+    stresses = discretisation.stresses_at(trial.state)
+    return Point(arc_length, trial.load_factor, trial.state, slope, stresses, factors.negative_pivots())
 
 
 def arc(metric: Metric, chord: Direction, first: Slope, second: Slope) -> float:

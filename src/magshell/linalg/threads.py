@@ -1,0 +1,32 @@
+"""Threads of a factorisation."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import cache
+from typing import Any
+
+from magshell.processes import cores
+
+
+def threads() -> int:
+    """As many as this process may use: OMP_NUM_THREADS, or the cores."""
+    wanted = os.environ.get("OMP_NUM_THREADS", "")
+    return int(wanted) if wanted.isdecimal() and int(wanted) > 0 else cores()
+
+
+@cache
+def _libraries() -> Any:
+    import scipy.linalg.cython_blas  # noqa: F401
+    from threadpoolctl import ThreadpoolController
+
+    return ThreadpoolController()
+
+
+@contextmanager
+def one_blas_thread() -> Iterator[None]:
+    """BLAS computes with the thread that calls it: fronts are small, and sums keep their order."""
+    with _libraries().limit(limits=1, user_api="blas"):
+        yield
