@@ -1,6 +1,6 @@
-"""Dense products and triangular solves by SciPy's BLAS, called from compiled code.
+"""Dense products by SciPy's BLAS, called from compiled code.
 
-The routines are called by address, which reaches the kernels at run time, so that these can be cached. Matrices are
+The routine is called by its address, which reaches the kernels at run time, so that these can be cached. Matrices are
 stored by columns.
 """
 
@@ -16,14 +16,13 @@ from numba.extending import get_cython_function_address, intrinsic
 from magshell.arrays import AnyArray
 from magshell.compiled import inline
 
-NO, TRANSPOSED, LOWER, UPPER, RIGHT, LEFT, UNIT = (np.uint8(ord(letter)) for letter in "NTLURLU")
+AS_IT_IS, TRANSPOSED = (np.uint8(ord(letter)) for letter in "NT")
 
 
 class Blas(NamedTuple):
-    """Addresses of the routines of one precision, and the number one in it."""
+    """Address of the product of one precision, and the number one in it."""
 
     gemm: int
-    trsm: int
     one: Any
 
 
@@ -36,11 +35,10 @@ class Panel(NamedTuple):
     stride: int
 
 
-def routines(dtype: np.dtype[Any]) -> Blas:
-    """The routines for float64 or float32."""
-    letter = {"float64": "d", "float32": "s"}[dtype.name]
-    addresses = [get_cython_function_address("scipy.linalg.cython_blas", letter + name) for name in ("gemm", "trsm")]
-    return Blas(addresses[0], addresses[1], dtype.type(1.0))
+def blas_of(dtype: np.dtype[Any]) -> Blas:
+    """The product of float64 or float32."""
+    name = {"float64": "dgemm", "float32": "sgemm"}[dtype.name]
+    return Blas(get_cython_function_address("scipy.linalg.cython_blas", name), dtype.type(1.0))
 
 
 @intrinsic  # type: ignore[untyped-decorator]
@@ -73,41 +71,14 @@ def address_of(values: AnyArray) -> Any:
 @inline
 def subtract_product(blas: Blas, A: Panel, B: Panel, transposed: bool, C: Panel) -> None:
     """C -= A B, or C -= A Bᵀ."""
+    if A.columns == 0 or C.rows == 0 or C.columns == 0:
+        return
     inner = np.int32(A.columns)
-    form = TRANSPOSED if transposed else NO
+    form = TRANSPOSED if transposed else AS_IT_IS
     _call(
         blas.gemm,
         (
-            NO, form, np.int32(C.rows), np.int32(C.columns), inner, -blas.one, A.address, np.int32(A.stride),
+            AS_IT_IS, form, np.int32(C.rows), np.int32(C.columns), inner, -blas.one, A.address, np.int32(A.stride),
             B.address, np.int32(B.stride), blas.one, C.address, np.int32(C.stride),
-        ),
-    )  # fmt: skip
-
-
-@inline
-def divide_by_upper(blas: Blas, U: Panel, X: Panel) -> None:
-    """X := X U⁻¹."""
-    _solve(blas, RIGHT, UPPER, NO, NO, U, X)
-
-
-@inline
-def divide_by_unit_lower(blas: Blas, L: Panel, X: Panel) -> None:
-    """X := L⁻¹ X, ones on the diagonal of L."""
-    _solve(blas, LEFT, LOWER, NO, UNIT, L, X)
-
-
-@inline
-def divide_by_unit_lower_transposed(blas: Blas, L: Panel, X: Panel) -> None:
-    """X := X L⁻ᵀ, ones on the diagonal of L."""
-    _solve(blas, RIGHT, LOWER, TRANSPOSED, UNIT, L, X)
-
-
-@inline
-def _solve(blas: Blas, side: Any, triangle: Any, form: Any, diagonal: Any, T: Panel, X: Panel) -> None:
-    _call(
-        blas.trsm,
-        (
-            side, triangle, form, diagonal, np.int32(X.rows),
-            np.int32(X.columns), blas.one, T.address, np.int32(T.stride), X.address, np.int32(X.stride),
         ),
     )  # fmt: skip

@@ -18,19 +18,11 @@ import numpy as np
 
 from magshell.arrays import AnyArray, IntArray
 from magshell.compiled import Kernel, inline
-from magshell.linalg.multifrontal.blas import (
-    Blas,
-    Panel,
-    address_of,
-    divide_by_unit_lower,
-    divide_by_unit_lower_transposed,
-    divide_by_upper,
-    subtract_product,
-)
+from magshell.linalg.multifrontal.blas import Blas, Panel, address_of, subtract_product
 from magshell.linalg.multifrontal.fronts import Entries, Fronts
 
-# Columns of a pivot block that are eliminated by loops; columns of a symmetric update made at a time.
-STRIP, CHUNK = 32, 128
+# Columns that are eliminated by loops, and rows of them that the cache keeps; columns of a symmetric update at a time.
+STRIP, ROWS, CHUNK = 16, 128, 128
 
 
 class Factors(NamedTuple):
@@ -99,7 +91,7 @@ def eliminate(sequence: IntArray, fronts: Fronts, tree: Tree, factors: Factors, 
         if r == 0:
             continue
         L = Panel(block.address + width * k, r, k, stride)
-        divide_by_upper(blas, block, L)
+        _divide(blas, (lower, block, first), (lower, L, first + k), False)
         if symmetric:
             U = Panel(address_of(room.panel), r, k, r)
             for j in range(k):
@@ -108,7 +100,7 @@ def eliminate(sequence: IntArray, fronts: Fronts, tree: Tree, factors: Factors, 
                     room.panel[j * r + i] = pivot * lower[first + j * stride + k + i]
         else:
             U = Panel(address_of(upper) + width * fronts.upper[s], r, k, r)
-            divide_by_unit_lower_transposed(blas, block, U)
+            _divide(blas, (lower, block, first), (upper, U, fronts.upper[s]), True)
         chunk = CHUNK if symmetric else r
         for j in range(0, r, chunk):
             columns = min(chunk, r - j)
@@ -187,14 +179,15 @@ def _factorise_block(values: AnyArray, first: int, block: Panel, symmetric: bool
             break
         corner = Panel(block.address + width * (b * stride + b), e - b, e - b, stride)
         below = Panel(block.address + width * (b * stride + e), k - e, e - b, stride)
-        right = Panel(block.address + width * (e * stride + b), e - b, k - e, stride)
-        divide_by_upper(blas, corner, below)
-        if symmetric:
-            for j in range(e, k):
-                for i in range(b, e):
+        _divide(blas, (values, corner, first + b * stride + b), (values, below, first + b * stride + e), False)
+        for j in range(e, k):
+            for i in range(b, e):
+                if symmetric:
                     values[first + j * stride + i] = values[first + i * stride + j] * values[first + i * stride + i]
-        else:
-            divide_by_unit_lower(blas, corner, right)
+                else:
+                    factor = values[first + j * stride + i]
+                    for t in range(i + 1, e):
+                        values[first + j * stride + t] -= values[first + i * stride + t] * factor
         chunk = CHUNK if symmetric else k
         for j in range(e, k, chunk):
             columns = min(chunk, k - j)
@@ -207,6 +200,46 @@ def _factorise_block(values: AnyArray, first: int, block: Panel, symmetric: bool
                 Panel(block.address + width * (j * stride + top), k - top, columns, stride),
             )
     return least
+
+
+@inline
+def _divide(blas: Blas, triangle: tuple[AnyArray, Panel, int], right: tuple[AnyArray, Panel, int], lower: bool) -> None:
+    """X := X U⁻¹, or X := X L⁻ᵀ with ones on the diagonal of L, strip by strip.
+
+    Parameters
+    ----------
+    triangle, right : tuple
+        L and U in one block, and X: the array, the panel in it, and the place of the panel's first entry.
+    lower : bool
+        Whether to divide by Lᵀ.
+    """
+    T, block, first = triangle
+    values, X, start = right
+    width = values.itemsize
+    for b in range(0, X.columns, STRIP):
+        e = min(b + STRIP, X.columns)
+        at = block.address + width * (b if lower else b * block.stride)
+        before = Panel(at, e - b if lower else b, b if lower else e - b, block.stride)
+        subtract_product(
+            blas,
+            Panel(X.address, X.rows, b, X.stride),
+            before,
+            lower,
+            Panel(X.address + width * b * X.stride, X.rows, e - b, X.stride),
+        )
+        for top in range(0, X.rows, ROWS):
+            bottom = min(top + ROWS, X.rows)
+            for j in range(b, e):
+                own = start + j * X.stride
+                for i in range(b, j):
+                    other = start + i * X.stride
+                    factor = T[first + i * block.stride + j] if lower else T[first + j * block.stride + i]
+                    for t in range(top, bottom):
+                        values[own + t] -= values[other + t] * factor
+                if not lower:
+                    inverse = 1.0 / T[first + j * block.stride + j]
+                    for t in range(top, bottom):
+                        values[own + t] *= inverse
 
 
 @inline

@@ -11,7 +11,7 @@ import scipy.sparse as sp
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.linalg.factorisation import Factorisation, Scaled, ScaledFactors, scaled
 from magshell.linalg.multifrontal import elimination, solution
-from magshell.linalg.multifrontal.blas import routines
+from magshell.linalg.multifrontal.blas import blas_of
 from magshell.linalg.multifrontal.fronts import Entries, Fronts, analyse
 from magshell.linalg.multifrontal.schedule import Schedule, schedule_of
 from magshell.linalg.superlu import SuperLUFactors
@@ -121,7 +121,7 @@ class Multifrontal:
 
 def _eliminate(analysis: Analysis, factors: elimination.Factors) -> float:
     """All tasks, each by one thread at a time, then the top; returns the least pivot's magnitude."""
-    schedule, blas = analysis.schedule, routines(factors.lower.dtype)
+    schedule, blas = analysis.schedule, blas_of(factors.lower.dtype)
     tree = elimination.Tree(schedule.child_pointer, schedule.child, schedule.update_at)
     kept = np.empty(schedule.kept)
 
