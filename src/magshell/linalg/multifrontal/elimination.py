@@ -82,8 +82,7 @@ def eliminate(sequence: IntArray, fronts: Fronts, tree: Tree, factors: Factors, 
     for s in sequence:
         k, r = fronts.begin[s + 1] - fronts.begin[s], fronts.beyond[s]
         stride, first = k + r, fronts.lower[s]
-        for i in range(r * r):
-            room.update[i] = 0.0
+        room.update[: r * r] = 0.0
         for c in range(tree.child_pointer[s], tree.child_pointer[s + 1]):
             _add_update(tree.child[c], s, fronts, tree, factors, room)
         block = Panel(at_lower + width * first, k, k, stride)
@@ -113,11 +112,9 @@ def eliminate(sequence: IntArray, fronts: Fronts, tree: Tree, factors: Factors, 
             )
         at = tree.update_at[s]
         if at >= 0:
-            for i in range(r * r):
-                room.stack[at + i] = room.update[i]
+            copy(room.update, 0, room.stack[at : at + r * r])
         else:
-            for i in range(r * r):
-                room.kept[~at + i] = room.update[i]
+            copy(room.update, 0, room.kept[~at : ~at + r * r])
     return least
 
 
@@ -150,16 +147,14 @@ def _extend(
                     i = j
                 if j < k:
                     to = fronts.lower[s] + j * (k + r) + i
-                    for t in range(length):
-                        lower[to + t] += source[at + t]
+                    subtract(source, at, -1.0, lower[to : to + length])
                 elif i < k:
                     to = fronts.upper[s] + i * r + j - k
                     for t in range(length):
                         upper[to + t * r] += source[at + t]
                 else:
                     to = (j - k) * r + i - k
-                    for t in range(length):
-                        update[to + t] += source[at + t]
+                    subtract(source, at, -1.0, update[to : to + length])
                 at += length
             column += 1
 
@@ -185,9 +180,8 @@ def _factorise_block(values: AnyArray, first: int, block: Panel, symmetric: bool
                 if symmetric:
                     values[first + j * stride + i] = values[first + i * stride + j] * values[first + i * stride + i]
                 else:
-                    factor = values[first + j * stride + i]
-                    for t in range(i + 1, e):
-                        values[first + j * stride + t] -= values[first + i * stride + t] * factor
+                    own = values[first + j * stride + i + 1 : first + j * stride + e]
+                    subtract(values, first + i * stride + i + 1, values[first + j * stride + i], own)
         chunk = CHUNK if symmetric else k
         for j in range(e, k, chunk):
             columns = min(chunk, k - j)
@@ -230,16 +224,14 @@ def _divide(blas: Blas, triangle: tuple[AnyArray, Panel, int], right: tuple[AnyA
         for top in range(0, X.rows, ROWS):
             bottom = min(top + ROWS, X.rows)
             for j in range(b, e):
-                own = start + j * X.stride
+                own = values[start + j * X.stride + top : start + j * X.stride + bottom]
                 for i in range(b, j):
-                    other = start + i * X.stride
                     factor = T[first + i * block.stride + j] if lower else T[first + j * block.stride + i]
-                    for t in range(top, bottom):
-                        values[own + t] -= values[other + t] * factor
+                    subtract(values, start + i * X.stride + top, factor, own)
                 if not lower:
                     inverse = 1.0 / T[first + j * block.stride + j]
-                    for t in range(top, bottom):
-                        values[own + t] *= inverse
+                    for t in range(own.size):
+                        own[t] *= inverse
 
 
 @inline
@@ -247,18 +239,31 @@ def _factorise_strip(values: AnyArray, first: int, size: int, stride: int) -> fl
     """LU of a small square block in place; returns the least pivot's magnitude."""
     least = np.inf
     for j in range(size):
-        own = first + j * stride
-        pivot = values[own + j]
+        own = first + j * stride + j
+        pivot = values[own]
         least = min(least, abs(pivot))
-        for i in range(j + 1, size):
+        for i in range(1, size - j):
             values[own + i] /= pivot
-        for c in range(j + 1, size):
-            other = first + c * stride
-            factor = values[other + j]
-            if factor != 0.0:
-                for i in range(j + 1, size):
-                    values[other + i] -= values[own + i] * factor
+        for c in range(1, size - j):
+            at = own + c * stride
+            subtract(values, own + 1, values[at], values[at + 1 : at + size - j])
     return least
+
+
+@inline
+def subtract(values: AnyArray, start: int, factor: float, own: AnyArray) -> None:
+    """Subtract so many times as many values from some of this or another array."""
+    other = values[start : start + own.size]
+    for t in range(own.size):
+        own[t] -= other[t] * factor
+
+
+@inline
+def copy(values: AnyArray, start: int, own: AnyArray) -> None:
+    """Take as many values from some of another array."""
+    other = values[start : start + own.size]
+    for t in range(own.size):
+        own[t] = other[t]
 
 
 @Kernel

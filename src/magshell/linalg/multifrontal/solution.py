@@ -4,76 +4,61 @@ from __future__ import annotations
 
 from magshell.arrays import AnyArray
 from magshell.compiled import Kernel, inline
-from magshell.linalg.multifrontal.elimination import Factors
+from magshell.linalg.multifrontal.elimination import Factors, copy, subtract
 from magshell.linalg.multifrontal.fronts import Fronts
 
 
 @Kernel
-def solve(fronts: Fronts, factors: Factors, x: AnyArray, beyond: AnyArray) -> None:
-    """x := U⁻¹ L⁻¹ x in elimination order; `beyond` has room for the rows of the largest front."""
-    lower = factors.lower
+def solve(fronts: Fronts, factors: Factors, x: AnyArray, room: AnyArray) -> None:
+    """x := U⁻¹ L⁻¹ x in elimination order; `room` holds the rows of the largest front."""
+    lower, upper = factors.lower, factors.upper
     for s in range(fronts.parent.size):
-        f, k, r = fronts.begin[s], fronts.begin[s + 1] - fronts.begin[s], fronts.beyond[s]
-        for i in range(r):
-            beyond[i] = 0.0
+        own, beyond, at, stride = _front(s, fronts, x, room)
+        k = own.size
+        beyond[:] = 0.0
         for j in range(k):
-            at, value = fronts.lower[s] + j * (k + r), x[f + j]
-            for i in range(j + 1, k):
-                x[f + i] -= lower[at + i] * value
-            for i in range(r):
-                beyond[i] -= lower[at + k + i] * value
+            subtract(lower, at + j * stride + j + 1, own[j], own[j + 1 :])
+            subtract(lower, at + j * stride + k, own[j], beyond)
         _give(s, fronts, beyond, x)
     for s in range(fronts.parent.size - 1, -1, -1):
-        f, k, r = fronts.begin[s], fronts.begin[s + 1] - fronts.begin[s], fronts.beyond[s]
+        own, beyond, at, stride = _front(s, fronts, x, room)
+        k = own.size
         _take(s, fronts, x, beyond)
         for j in range(k):
-            total = 0.0
             if factors.symmetric:
-                at = fronts.lower[s] + j * (k + r)
-                for i in range(r):
-                    total += lower[at + k + i] * beyond[i]
-                total *= lower[at + j]
+                own[j] -= lower[at + j * stride + j] * product(lower, at + j * stride + k, beyond)
             else:
-                at = fronts.upper[s] + j * r
-                for i in range(r):
-                    total += factors.upper[at + i] * beyond[i]
-            x[f + j] -= total
+                own[j] -= product(upper, fronts.upper[s] + j * beyond.size, beyond)
         for j in range(k - 1, -1, -1):
-            at = fronts.lower[s] + j * (k + r)
-            value = x[f + j] / lower[at + j]
-            x[f + j] = value
-            for i in range(j):
-                x[f + i] -= lower[at + i] * value
+            own[j] /= lower[at + j * stride + j]
+            subtract(lower, at + j * stride, own[j], own[:j])
 
 
 @Kernel
-def solve_transposed(fronts: Fronts, factors: Factors, x: AnyArray, beyond: AnyArray) -> None:
+def solve_transposed(fronts: Fronts, factors: Factors, x: AnyArray, room: AnyArray) -> None:
     """x := L⁻ᵀ U⁻ᵀ x in elimination order; of an unsymmetric matrix."""
     lower, upper = factors.lower, factors.upper
     for s in range(fronts.parent.size):
-        f, k, r = fronts.begin[s], fronts.begin[s + 1] - fronts.begin[s], fronts.beyond[s]
-        for i in range(r):
-            beyond[i] = 0.0
-        for j in range(k):
-            at, total = fronts.lower[s] + j * (k + r), x[f + j]
-            for i in range(j):
-                total -= lower[at + i] * x[f + i]
-            value = total / lower[at + j]
-            x[f + j] = value
-            at = fronts.upper[s] + j * r
-            for i in range(r):
-                beyond[i] -= upper[at + i] * value
+        own, beyond, at, stride = _front(s, fronts, x, room)
+        beyond[:] = 0.0
+        for j in range(own.size):
+            own[j] = (own[j] - product(lower, at + j * stride, own[:j])) / lower[at + j * stride + j]
+            subtract(upper, fronts.upper[s] + j * beyond.size, own[j], beyond)
         _give(s, fronts, beyond, x)
     for s in range(fronts.parent.size - 1, -1, -1):
-        f, k, r = fronts.begin[s], fronts.begin[s + 1] - fronts.begin[s], fronts.beyond[s]
+        own, beyond, at, stride = _front(s, fronts, x, room)
+        k = own.size
         _take(s, fronts, x, beyond)
         for j in range(k - 1, -1, -1):
-            at, total = fronts.lower[s] + j * (k + r), x[f + j]
-            for i in range(j + 1, k):
-                total -= lower[at + i] * x[f + i]
-            for i in range(r):
-                total -= lower[at + k + i] * beyond[i]
-            x[f + j] = total
+            own[j] -= product(lower, at + j * stride + j + 1, own[j + 1 :])
+            own[j] -= product(lower, at + j * stride + k, beyond)
+
+
+@inline
+def _front(s: int, fronts: Fronts, x: AnyArray, room: AnyArray) -> tuple[AnyArray, AnyArray, int, int]:
+    """Values of a front's pivots, room for those beyond, its first place in the lower panels, and its rows."""
+    begin, end, r = fronts.begin[s], fronts.begin[s + 1], fronts.beyond[s]
+    return x[begin:end], room[:r], fronts.lower[s], end - begin + r
 
 
 @inline
@@ -81,10 +66,9 @@ def _give(s: int, fronts: Fronts, beyond: AnyArray, x: AnyArray) -> None:
     """Add what the rows beyond a front receive."""
     at = 0
     for run in range(fronts.run_pointer[s], fronts.run_pointer[s + 1]):
-        place = fronts.run_place[run]
-        for i in range(fronts.run_length[run]):
-            x[place + i] += beyond[at]
-            at += 1
+        place, length = fronts.run_place[run], fronts.run_length[run]
+        subtract(beyond, at, -1.0, x[place : place + length])
+        at += length
 
 
 @inline
@@ -92,7 +76,15 @@ def _take(s: int, fronts: Fronts, x: AnyArray, beyond: AnyArray) -> None:
     """Collect the values of the rows beyond a front."""
     at = 0
     for run in range(fronts.run_pointer[s], fronts.run_pointer[s + 1]):
-        place = fronts.run_place[run]
-        for i in range(fronts.run_length[run]):
-            beyond[at] = x[place + i]
-            at += 1
+        place, length = fronts.run_place[run], fronts.run_length[run]
+        copy(x, place, beyond[at : at + length])
+        at += length
+
+
+@inline
+def product(values: AnyArray, start: int, own: AnyArray) -> float:
+    """Scalar product with as many values from some of another array."""
+    other, total = values[start : start + own.size], 0.0
+    for t in range(own.size):
+        total += other[t] * own[t]
+    return total
