@@ -13,7 +13,8 @@ def solve(fronts: Fronts, factors: Factors, x: AnyArray, room: AnyArray) -> None
     """x := U⁻¹ L⁻¹ x in elimination order; `room` holds the rows of the largest front."""
     lower, upper = factors.lower, factors.upper
     for s in range(fronts.parent.size):
-        own, beyond, at, stride = _front(s, fronts, x, room)
+        begin, end, at = fronts.begin[s], fronts.begin[s + 1], fronts.lower[s]
+        own, beyond, stride = x[begin:end], room[: fronts.beyond[s]], end - begin + fronts.beyond[s]
         k = own.size
         beyond[:] = 0.0
         for j in range(k):
@@ -21,7 +22,8 @@ def solve(fronts: Fronts, factors: Factors, x: AnyArray, room: AnyArray) -> None
             subtract(lower, at + j * stride + k, own[j], beyond)
         _give(s, fronts, beyond, x)
     for s in range(fronts.parent.size - 1, -1, -1):
-        own, beyond, at, stride = _front(s, fronts, x, room)
+        begin, end, at = fronts.begin[s], fronts.begin[s + 1], fronts.lower[s]
+        own, beyond, stride = x[begin:end], room[: fronts.beyond[s]], end - begin + fronts.beyond[s]
         k = own.size
         _take(s, fronts, x, beyond)
         for j in range(k):
@@ -39,26 +41,21 @@ def solve_transposed(fronts: Fronts, factors: Factors, x: AnyArray, room: AnyArr
     """x := L⁻ᵀ U⁻ᵀ x in elimination order; of an unsymmetric matrix."""
     lower, upper = factors.lower, factors.upper
     for s in range(fronts.parent.size):
-        own, beyond, at, stride = _front(s, fronts, x, room)
+        begin, end, at = fronts.begin[s], fronts.begin[s + 1], fronts.lower[s]
+        own, beyond, stride = x[begin:end], room[: fronts.beyond[s]], end - begin + fronts.beyond[s]
         beyond[:] = 0.0
         for j in range(own.size):
             own[j] = (own[j] - product(lower, at + j * stride, own[:j])) / lower[at + j * stride + j]
             subtract(upper, fronts.upper[s] + j * beyond.size, own[j], beyond)
         _give(s, fronts, beyond, x)
     for s in range(fronts.parent.size - 1, -1, -1):
-        own, beyond, at, stride = _front(s, fronts, x, room)
+        begin, end, at = fronts.begin[s], fronts.begin[s + 1], fronts.lower[s]
+        own, beyond, stride = x[begin:end], room[: fronts.beyond[s]], end - begin + fronts.beyond[s]
         k = own.size
         _take(s, fronts, x, beyond)
         for j in range(k - 1, -1, -1):
             own[j] -= product(lower, at + j * stride + j + 1, own[j + 1 :])
             own[j] -= product(lower, at + j * stride + k, beyond)
-
-
-@inline
-def _front(s: int, fronts: Fronts, x: AnyArray, room: AnyArray) -> tuple[AnyArray, AnyArray, int, int]:
-    """Values of a front's pivots, room for those beyond, its first place in the lower panels, and its rows."""
-    begin, end, r = fronts.begin[s], fronts.begin[s + 1], fronts.beyond[s]
-    return x[begin:end], room[:r], fronts.lower[s], end - begin + r
 
 
 @inline
