@@ -37,15 +37,16 @@ def plate(elements: int, shape: str, element: str) -> ms.Model:
 
 def measure(elements: int, shape: str, element: str) -> None:
     """Print a row."""
-    model, solver = plate(elements, shape, element), make_solver("superlu")
+    model, solver = plate(elements, shape, element), make_solver("multifrontal")
     need = need_of(model)
     discretisation = Discretisation(model, nested_dissection)
-    state = discretisation.undeformed()
+    state, factors = discretisation.undeformed(), None
     for _ in range(2):
         matrix = discretisation.assemble(state, model.course(0).at(0.0), discretisation.stresses_at(state)).matrix
         assert matrix is not None
-        solver.factorise(matrix)
-        solver.negative_pivots()
+        factors = None
+        factors = solver.factorise(matrix)
+        factors.negative_pivots()
     peak = 1024.0 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     print(
         f"{shape:6} {element:10}{len(model.shell.mesh.elements):8} {discretisation.dofs:9} {need.factors:12.4g} "

@@ -33,7 +33,5 @@ def respond(model: ms.Model) -> Response:
     right_side = d.assemble(start, d.model.loading(1.0)).right_side
     matrix = d.assemble(start, d.model.loading(0.0)).matrix
     assert matrix is not None
-    solver = make_solver("superlu")
-    solver.factorise(matrix)
-    solution = solver.solve(right_side)
+    solution = make_solver("superlu").factorise(matrix).solve(right_side)
     return Response(d, d.expand(solution), 0.5 * float(right_side @ solution))

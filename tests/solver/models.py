@@ -63,9 +63,8 @@ def last_correction(path: Path) -> float:
     discretisation, step = path.discretisation, path.steps[-1]
     assembly = discretisation.assemble(step.state, discretisation.model.loading(step.load_factor))
     assert assembly.matrix is not None
-    solver = make_solver("superlu")
-    solver.factorise(assembly.matrix)
-    return float(np.abs(discretisation.expand(solver.solve(assembly.right_side))[:, :3]).max())
+    factors = make_solver("superlu").factorise(assembly.matrix)
+    return float(np.abs(discretisation.expand(factors.solve(assembly.right_side))[:, :3]).max())
 
 
 def equation_numbers(discretisation: Discretisation) -> np.ndarray:

@@ -151,4 +151,4 @@ def test_load_that_does_nothing() -> None:
 
 
 def test_make_solver_is_the_one_in_use() -> None:
-    assert solve(strip((2, 1))).solver_name == make_solver("superlu").name
+    assert solve(strip((2, 1))).solver_name == make_solver("multifrontal").name

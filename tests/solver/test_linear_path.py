@@ -126,8 +126,7 @@ def test_to_first_order_it_would_tip_at_a_fifth_of_the_load():
     assert line.unit / ratio == pytest.approx(0.0573, rel=1e-2)
     for share, pivots in ((0.99, 0), (1.01, 1)):
         s = share * 0.30658 / line.unit
-        solver.factorise(start + s * first + s**2 * second)
-        assert solver.negative_pivots() == pivots
+        assert solver.factorise(start + s * first + s**2 * second).negative_pivots() == pivots
 
 
 def test_the_linear_path_has_the_rotation_and_strain_of_a_beam():

@@ -28,7 +28,8 @@ def run(given: argparse.Namespace) -> int:
 
     problem = load(given.problem)
     report = describe(problem)
-    report.sections["Mesh"].append(("memory of a solve", memory_line(need_of(problem.model).memory, memory_free())))
+    need = need_of(problem.model, problem.settings.linear_solver)
+    report.sections["Mesh"].append(("memory of a solve", memory_line(need.memory, memory_free())))
     out = console()
     width = max(len(label) for lines in report.sections.values() for label, _ in lines)
     for section, lines in report.sections.items():

@@ -29,13 +29,13 @@ def say_memory(on: Console, problem: Problem) -> None:
 
     if len(problem.model.shell.mesh.elements) < FEW_ELEMENTS:
         return
-    need, free = need_of(problem.model), memory_free()
+    need, free = need_of(problem.model, problem.settings.linear_solver), memory_free()
     if problem.settings.linear_solver == "superlu" and need.tangent > MOST_ENTRIES:
         tangent, most = (f"{entries / 1e6:.1f} million" for entries in (need.tangent, MOST_ENTRIES))
         text = (
             f"the tangent has {tangent} entries; SuperLU takes up to {most}: the solve will fail; take fewer elements"
         )
-        say(on, f'warning: {text} or solver.linear_solver = "pardiso"', style="yellow")
+        say(on, f'warning: {text} or solver.linear_solver = "multifrontal"', style="yellow")
     line = f"memory: {memory_line(need.memory, free)}"
     if free is not None and need.memory > free:
         say(on, f"warning: {line}: the solve may be killed; take fewer elements or a larger machine", style="yellow")

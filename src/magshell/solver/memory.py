@@ -1,26 +1,26 @@
 """Memory that a solve will need, told before it is begun, and what the machine has.
 
-Nearly all of it are the factors of the tangent. Their entries are counted, not guessed: a matrix with one unknown per
-node, in the same elimination order, is factorised; an entry between two nodes there stands for as many as the product
-of their numbers of unknowns.
+Nearly all of it are the factors of the tangent. Their entries are counted, not guessed: the symbolic phase of the
+multifrontal solver, on nodes of so many unknowns.
 """
 
 from __future__ import annotations
 
 import pathlib
 import sys
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
 
 from magshell.linalg import nested_dissection
+from magshell.linalg.multifrontal.fronts import fronts_of
 from magshell.model import Model
 from magshell.numbering import columns_of
-from magshell.openblas import allocate_buffers
 
 # Measured by benchmarks/memory.py: bytes of the program itself, for each element, and for each entry of the factors.
-PROGRAM, PER_ELEMENT, PER_ENTRY = 300e6, 100e3, 30.0
+PROGRAM, PER_ELEMENT = 300e6, 100e3
+PER_ENTRY = {"multifrontal": 9.0, "superlu": 30.0, "pardiso": 16.0}
 
 
 class Need(NamedTuple):
@@ -29,7 +29,7 @@ class Need(NamedTuple):
     Attributes
     ----------
     memory : float
-        Bytes at its peak, to a third or so (SuperLU).
+        Bytes at its peak, to a third or so.
     factors : float
         Entries of both triangular factors of the tangent.
     tangent : float
@@ -41,31 +41,24 @@ class Need(NamedTuple):
     tangent: float
 
 
-def need_of(model: Model) -> Need:
+def need_of(model: Model, linear_solver: str = "multifrontal") -> Need:
     """What a solve of a model will take."""
-    from scipy.sparse.linalg import splu
-
-    allocate_buffers()
     mesh, nodes = model.shell.mesh, len(model.shell.mesh.points)
     elements, corners = mesh.elements.shape
     starts = np.arange(0, elements * corners + 1, corners)
     incidence = sp.csr_array((np.ones(elements * corners), mesh.elements.ravel(), starts), shape=(elements, nodes))
     graph = sp.csr_array(incidence.T @ incidence)
     order = nested_dissection(graph)
-    unknowns = (columns_of(model.shell.carriers) & ~model.constraints.fixed).sum(axis=1)[order].astype(float)
-    ordered = graph[order][:, order]
-    dominant = sp.csc_array(ordered + 1e3 * sp.eye_array(nodes))
-    factors = splu(dominant, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    entries = 2.0 * unknowns @ (_ones(factors.L) @ unknowns) - unknowns @ unknowns
-    memory = PROGRAM + PER_ELEMENT * elements + PER_ENTRY * entries
-    return Need(float(memory), float(entries), float(unknowns @ (_ones(ordered) @ unknowns)))
-
-
-def _ones(matrix: Any) -> Any:
-    """The same entries, each 1."""
-    ones = matrix.copy()
-    ones.data = np.ones_like(ones.data)
-    return ones
+    unknowns = (columns_of(model.shell.carriers) & ~model.constraints.fixed).sum(axis=1)
+    order = order[unknowns[order] > 0]
+    ordered = sp.csc_array(graph[order][:, order])
+    ordered.sort_indices()
+    widths = unknowns[order]
+    fronts, _ = fronts_of(ordered.indptr.astype(np.int64), ordered.indices.astype(np.int64), widths)
+    entries = fronts.lower[-1] + fronts.upper[-1]
+    tangent = widths[ordered.indices] @ np.repeat(widths, np.diff(ordered.indptr))
+    memory = PROGRAM + PER_ELEMENT * elements + PER_ENTRY[linear_solver] * entries
+    return Need(float(memory), float(entries), float(tangent))
 
 
 def memory_free() -> float | None:
