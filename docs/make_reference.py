@@ -388,7 +388,7 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "first_step": "First increment of the load factor in a stage.",
             "smallest_step": "A step shorter than this, in displacements over the body's size, ends the solve.",
             "largest_step": "No increment of the load factor exceeds this.",
-            "linear_solver": "`superlu`, or `pardiso` where the extra is installed.",
+            "linear_solver": "`multifrontal`, `superlu`, or `pardiso` where the extra is installed.",
         },
     ),
     "file": (
