@@ -51,7 +51,8 @@ def measure(elements: int, solver: str, repeats: int) -> None:
     print(
         f"{len(model.shell.mesh.elements):7d} elements {discretisation.dofs:8d} unknowns  {linear_solver.name:26s}"
         f" setup {setup:6.2f} s  factorisation {factorisation:7.3f} s  solve {solve:6.3f} s"
-        f"  iteration {iteration:7.3f} s  ratio {iteration / (factorisation + solve):.2f} (asked: at most 1.6)  peak {peak:.2f} GB",
+        f"  iteration {iteration:7.3f} s  ratio {iteration / (factorisation + solve):.2f} (asked: at most 1.6)"
+        f"  peak {peak:.2f} GB",
         flush=True,
     )
 

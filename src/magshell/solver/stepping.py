@@ -47,8 +47,8 @@ def solve(model: Model, settings: Settings | None = None, observers: Sequence[Ob
 def resume(path: Path, observers: Sequence[Observer] = ()) -> Path:
     """Go on with a path where its last step left it.
 
-    Where the linear solver repeats its results (all but PARDISO), every step after it is the same to the last bit as if the
-    path had never been left.
+    Where the linear solver repeats its results (all but PARDISO), every step after it is the same to the last bit as if
+    the path had never been left.
 
     Parameters
     ----------
