@@ -8,11 +8,17 @@ from contextlib import contextmanager
 from functools import cache
 from typing import Any
 
+from magshell.openblas import is_limited
 from magshell.processes import cores
 
 
 def threads() -> int:
-    """As many as this process may use: OMP_NUM_THREADS, or the cores."""
+    """As many as this process may use: OMP_NUM_THREADS, or the cores; one where memory is limited.
+
+    (Each thread that calls OpenBLAS has a work array of its own there, for which it waits for ever.)
+    """
+    if is_limited():
+        return 1
     wanted = os.environ.get("OMP_NUM_THREADS", "")
     return int(wanted) if wanted.isdecimal() and int(wanted) > 0 else cores()
 
