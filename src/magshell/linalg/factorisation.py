@@ -117,7 +117,7 @@ class ScaledFactors:
             vector = solution / np.linalg.norm(solution)
             if abs(inverse - last) <= EIGENVALUE_TOLERANCE * abs(inverse):
                 break
-        return 1.0 / inverse, np.asarray(self.scale * vector)
+        return 1.0 / inverse if inverse else np.inf, np.asarray(self.scale * vector)
 
 
 @Kernel

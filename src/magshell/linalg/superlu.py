@@ -43,7 +43,10 @@ class SuperLUFactors(ScaledFactors):
 
         factors = self._factors
         if not np.array_equal(factors.perm_r, factors.perm_c):
-            factors = splu(self.matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=_SYMMETRIC)
+            try:
+                factors = splu(self.matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=_SYMMETRIC)
+            except RuntimeError:  # a pivot is zero
+                return None
             if not np.array_equal(factors.perm_r, factors.perm_c):
                 return None
         return int(np.count_nonzero(factors.U.diagonal() < 0.0))
