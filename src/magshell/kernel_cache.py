@@ -82,9 +82,13 @@ def _libraries() -> frozenset[pathlib.Path]:
 
 @cache
 def _imported(file: pathlib.Path) -> frozenset[str]:
-    """Names of the modules that a file imports, anywhere in it; a package only if it takes more of it than modules."""
+    """Names of the modules that a file imports when it runs; a package only if it takes more of it than modules."""
     names: set[str] = set()
-    for node in ast.walk(ast.parse(file.read_bytes())):
+    tree = ast.parse(file.read_bytes())
+    for node in ast.walk(tree):
+        if isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING"):
+            node.body = []
+    for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             names.update(alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):

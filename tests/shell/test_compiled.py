@@ -130,7 +130,9 @@ def test_imports_are_followed_as_python_follows_them(tmp_path, monkeypatch):
         "laws/deep/__init__.py": "",
         "laws/deep/roots.py": "from laws.deep import constants\n",
         "laws/deep/constants.py": "def late():\n    import lately\n",
-        "beside.py": "from laws import powers, ogden\n",
+        "beside.py": "from laws import powers, ogden\nif TYPE_CHECKING:\n    import typed\nelse:\n    import untyped\n",
+        "typed.py": "",
+        "untyped.py": "",
         "lately.py": "",
     }
     for name, content in contents.items():
@@ -139,7 +141,7 @@ def test_imports_are_followed_as_python_follows_them(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(tmp_path)
     expected = {"laws/ogden.py", "laws/powers.py", "laws/deep/roots.py", "laws/deep/constants.py", "beside.py"}
     found = {str(file.relative_to(tmp_path)) for file in sources(tmp_path / "laws" / "ogden.py")}
-    assert found == expected | {"lately.py"}
+    assert found == expected | {"lately.py", "untyped.py"}
 
 
 def test_what_a_law_is_made_of_enters_its_digest(cache, tmp_path, monkeypatch):

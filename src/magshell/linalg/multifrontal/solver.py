@@ -77,12 +77,12 @@ class MultifrontalFactors(ScaledFactors):
         solution, last = self._solve_once(right_side, transposed), np.inf
         for _ in range(REFINEMENTS):
             residual = right_side - matrix @ solution
-            error = np.abs(residual).max() / (np.abs(right_side).max() + np.abs(solution).max())
-            if error <= ROUND_OFF:
+            error, size = np.abs(residual).max(), np.abs(right_side).max() + np.abs(solution).max()
+            if error <= ROUND_OFF * size:
                 return solution
-            if not error < 0.5 * last:
+            if not error < 0.5 * last * size:
                 break
-            solution, last = solution + self._solve_once(residual, transposed), error
+            solution, last = solution + self._solve_once(residual, transposed), error / size
         raise Unstable
 
     def _solve_once(self, right_side: FloatArray, transposed: bool) -> FloatArray:
