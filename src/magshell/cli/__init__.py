@@ -14,7 +14,7 @@ from magshell.cli.console import complain
 from magshell.cli.letters import write_readably
 from magshell.cli.status import BAD_INPUT, INTERRUPTED, NOT_SOLVED
 from magshell.errors import InputError, lacks_memory
-from magshell.openblas import allocate_buffers
+from magshell.openblas import allocate_buffers, is_limited
 
 COMMANDS = {
     "run": run,
@@ -83,7 +83,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         complain(f"{error.filename or 'a file'}: {error.strerror or error}")
         return NOT_SOLVED
     except Exception as error:
-        if lacks_memory(error):
+        # C code that got no memory may fail without saying why, which Python reports as a SystemError.
+        if lacks_memory(error) or (isinstance(error, SystemError) and is_limited()):
             complain(NO_MEMORY)
             return NOT_SOLVED
         if given.debug:
