@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 
@@ -11,6 +13,7 @@ from magshell import Model
 from magshell.assembly import Discretisation
 from magshell.cli import main
 from magshell.linalg import make_solver, nested_dissection
+from magshell.linalg.multifrontal.solver import Multifrontal, MultifrontalFactors
 from magshell.solver.memory import PER_ENTRY, Need, memory_free, need_of
 from solver.models import arm, strip
 
@@ -100,3 +103,21 @@ def test_no_memory(problem, monkeypatch, capsys) -> None:
 def test_check_says_it(capsys) -> None:
     assert main(["check", "strip-10"]) == 0
     assert "memory of a solve" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("follow", [ms.solve, lambda model: ms.buckling(model, modes=2)], ids=["path", "buckling"])
+def test_factors_do_not_outlive_their_use(follow: Callable[[Model], object], monkeypatch) -> None:
+    """When a tangent is factorised, no other factors are there: on a path with critical points, and in buckling."""
+    alive: weakref.WeakSet[MultifrontalFactors] = weakref.WeakSet()
+    factorise, most = Multifrontal.factorise, []
+
+    def watched(solver: Multifrontal, matrix: Any) -> Any:
+        most.append(len(alive))
+        factors = factorise(solver, matrix)
+        alive.add(factors)
+        return factors
+
+    monkeypatch.setattr(Multifrontal, "factorise", watched)
+    follow(ms.problem.load("hinged-roof" if follow is ms.solve else "cantilever-moment").model)
+    assert len(most) > 5
+    assert max(most) == 0

@@ -22,8 +22,8 @@ from magshell.assembly import Assembly
 from magshell.linalg import Factorisation, SingularMatrix
 from magshell.shell.state import State
 from magshell.solver.constraints import Metric, Sphere
-from magshell.solver.newton import Solution, StepFailure, System, Trial, newton
-from magshell.solver.track import Point, factors_at, point_at, trial_at
+from magshell.solver.newton import Solution, StepFailure, System, Trial, factorise, newton
+from magshell.solver.track import Point, point_at, trial_at
 
 LIMIT_POINT, BIFURCATION = "limit point", "bifurcation"
 # Of a step: accuracy of a limit point along it, and the distances from which a bifurcation is approached.
@@ -93,14 +93,17 @@ def locate(system: System, metric: Metric, before: Point, after: Point, report: 
         A state between the two is not found.
     """
     search = _Search(system, metric, before, after, report)
-    turn = search.turn() if before.slope.load * after.slope.load < 0.0 else None
-    if turn is None:
-        yield from search.bifurcations(0.0, search.length)
-        return
-    margin = CLEARANCE * search.length
-    yield from search.bifurcations(0.0, max(turn - margin, 0.0))
-    yield search.limit_point(turn)
-    yield from search.bifurcations(min(turn + margin, search.length), search.length)
+    try:
+        turn = search.turn() if before.slope.load * after.slope.load < 0.0 else None
+        if turn is None:
+            yield from search.bifurcations(0.0, search.length)
+            return
+        margin = CLEARANCE * search.length
+        yield from search.bifurcations(0.0, max(turn - margin, 0.0))
+        yield search.limit_point(turn)
+        yield from search.bifurcations(min(turn + margin, search.length), search.length)
+    finally:
+        search.factors = None  # SciPy's root finder leaves a cycle that holds the search
 
 
 class _Search:
@@ -119,6 +122,7 @@ class _Search:
 
     def point(self, distance: float) -> Point:
         """The point of the path at a distance from the first; `factors` are of its tangent, with its own stresses."""
+        self.factors = None
         system, before = self.system, self.before
         state, load_factor, along = before.state, before.load_factor, before.slope.direction
         if distance > 0.0:
@@ -129,8 +133,7 @@ class _Search:
             state, load_factor = found.state, found.load_factor
         own = self.own(state, load_factor)
         solution = Solution(own, system.assemble(own), [0.0], None, None)
-        self.factors = None
-        self.factors = factors_at(system, self.metric, solution, along)
+        self.factors = factorise(system, solution.assembly)
         point = point_at(system, self.metric, solution, self.factors, before.arc_length + distance, along)
         self.known[distance] = point
         return point
@@ -202,6 +205,7 @@ class _Search:
     def mode(self, assembly: Assembly) -> FloatArray:
         """The direction in which a tangent does least."""
         assert assembly.matrix is not None
+        self.factors = None
         try:
             direction = self.system.linear_solver.factorise(assembly.matrix).smallest_eigenpair()[1]
         except SingularMatrix as singular:

@@ -132,13 +132,16 @@ class _Search:
         """K(0), its scale, and its pivots."""
         self.origin = self.matrix(0.0)
         self.scale = scaled(self.origin).scale
-        self.factors = self.solver.factorise(self.origin)
+        self.factors: Factorisation | None = self.solver.factorise(self.origin)
         self.counts[0.0] = self.factors.negative_pivots()
 
     # -- guesses -------------------------------------------------------------------------------------------------
 
     def guesses(self) -> list[Eigenpair]:
         """Real roots of the quadratic problem within reach, rising in magnitude."""
+        # Two sets of factors at a time would be twice the memory.
+        factors, self.factors = self.factors, None
+        assert factors is not None
         ahead, back, size = self.matrix(1.0), self.matrix(-1.0), self.scale.size
         first, second = 0.5 * (ahead - back), 0.5 * (ahead + back - 2.0 * self.origin)
         if not (np.any(first.data) or np.any(second.data)):
@@ -147,7 +150,7 @@ class _Search:
 
         def companion(y: FloatArray) -> FloatArray:
             forces = first @ (self.scale * y[:size]) + second @ (self.scale * y[size:])
-            return np.concatenate([-self.factors.solve(forces) / self.scale, y[:size]])
+            return np.concatenate([-factors.solve(forces) / self.scale, y[:size]])
 
         pairs = self._eigenpairs(companion, 2 * size, self.wanted + SPARE)
         self.farthest = max((abs(pair.value) for pair in pairs), default=0.0)

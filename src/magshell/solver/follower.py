@@ -17,7 +17,7 @@ from magshell.solver.goals import Goal, LoadGoal, ProbeGoal, goals_of
 from magshell.solver.newton import Solution, StepFailure, System, Trial, newton
 from magshell.solver.path import Path, Step
 from magshell.solver.starts import Start, start_of
-from magshell.solver.track import Direction, Point, Slope, arc, crossing, factors_at, known, point_at, trial_at
+from magshell.solver.track import Direction, Point, Slope, arc, close_factors, crossing, known, point_at, trial_at
 from magshell.solver.waypoint import Waypoint
 
 GROWTH, CUT = 2.5, 0.35
@@ -123,8 +123,7 @@ class Follower:
         trial = Trial(state, 0.0, self.discretisation.stresses_at(state))
         solution = Solution(trial, self.system.assemble(trial), [0.0], None, None)
         along: Direction = np.zeros_like(state.u), 1.0
-        factors = factors_at(self.system, self.metric, solution, along)
-        point = point_at(self.system, self.metric, solution, factors, start.arc_length, along)
+        point = point_at(self.system, self.metric, solution, None, start.arc_length, along)
         if start.mode is not None:
             length = self.metric.norm(start.mode[:, :3], 0.0)
             slope = Slope(start.mode / length, np.zeros_like(state.alpha), 0.0)
@@ -223,8 +222,10 @@ class Follower:
             solution = newton(self.system, trial, attempt.constraint, lambda *heard: self._report(trial, *heard))
             found = solution.trial
             chord: Direction = found.state.u - last.state.u, found.load_factor - last.load_factor
-            factors = factors_at(self.system, self.metric, solution, chord)
+            # No factors outlive their use: two sets of them at a time would be twice the memory.
+            factors, solution = close_factors(self.metric, solution, chord), solution._replace(factors=None)
             point = point_at(self.system, self.metric, solution, factors, 0.0, chord)
+            factors = None
             length = arc(self.metric, chord, last.slope, point.slope)
             point = point._replace(arc_length=last.arc_length + length)
             missed: Direction = found.state.u - trial.state.u, found.load_factor - trial.load_factor
@@ -233,7 +234,7 @@ class Follower:
                 raise StepFailure("the step goes beyond a stop")
             return point, solution, self._located(last, point)
         except StepFailure as failure:
-            self.failure = failure
+            self.failure = StepFailure(str(failure), failure.inverted)  # without the frames, which hold the factors
             self.path.cuts += 1
             for observer in self.observers:
                 observer.cut(trial.load_factor, str(failure))

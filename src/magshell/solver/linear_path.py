@@ -26,6 +26,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from magshell.assembly import InvertedElement
+from magshell.linalg import Factorisation
 from magshell.linalg.factorisation import scaled
 from magshell.loading import Loading
 from magshell.materials.law import Material, strain_energy
@@ -63,14 +64,14 @@ class LinearPath:
         discretisation = system.discretisation
         trial = Trial(state, 0.0, discretisation.stresses_at(state))
         self._assembly = discretisation.assemble(state, system.course.at(0.0), trial.stresses)
-        self._factors = factorise(system, self._assembly)
+        factors = factorise(system, self._assembly)
         self.unit = 1.0
         for _ in range(2):  # twice: in a unit that suits the load, no digits are lost beside forces that are there
-            self._advance(trial.stresses)
+            self._advance(factors, trial.stresses)
             self.strain, self.rotation = self._motion()
             if self.motion > 0.0:
                 self.unit *= UNIT / self.motion
-        self._advance(trial.stresses)
+        self._advance(factors, trial.stresses)
         self.strain, self.rotation = self._motion()
         self._stresses, self._stress_rate = self._along(trial.stresses)
         self._fit()
@@ -103,12 +104,12 @@ class LinearPath:
         assert matrix is not None
         return matrix.copy()
 
-    def _advance(self, stresses: Stresses) -> None:
+    def _advance(self, factors: Factorisation, stresses: Stresses) -> None:
         """The increment at s = 1."""
         discretisation, course = self.system.discretisation, self.system.course
         rate = Loading(*(self.unit * one for one in course.rate(0.0)))
         direction = discretisation.load_direction(self.state, course.at(0.0), rate, stresses, self._assembly)
-        solution = self._factors.solve(direction)
+        solution = factors.solve(direction)
         self._increment = discretisation.expand(solution, discretisation.imposed(rate.held))
         self._d_alpha = discretisation.recover(self._increment) - discretisation.recover(np.zeros_like(self._increment))
 

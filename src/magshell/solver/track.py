@@ -148,32 +148,30 @@ def crossing(
     return longest * float(min(inside)) if inside else None
 
 
-def factors_at(system: System, metric: Metric, solution: Solution, along: Direction) -> Factorisation:
-    """Factors of the tangent at a converged state.
-
-    Those of the last iteration serve where the last increment was small beside a direction.
-
-    Raises
-    ------
-    StepFailure
-        The tangent is singular.
-    """
+def close_factors(metric: Metric, solution: Solution, along: Direction) -> Factorisation | None:
+    """Those of the last iteration, where the last increment was small beside a direction."""
     last = np.inf if solution.increment is None else metric.norm(solution.increment[:, :3], 0.0)
-    if solution.factors is not None and last <= CLOSE * metric.norm(*along):
-        return solution.factors
-    return factorise(system, solution.assembly)
+    return solution.factors if last <= CLOSE * metric.norm(*along) else None
 
 
 def point_at(
-    system: System, metric: Metric, solution: Solution, factors: Factorisation, arc_length: float, along: Direction
+    system: System,
+    metric: Metric,
+    solution: Solution,
+    factors: Factorisation | None,
+    arc_length: float,
+    along: Direction,
 ) -> Point:
     """The point of a converged state, with the slope that goes along a direction.
+
+    Factors of a tangent close to that of the state serve; without any, its own is factorised.
 
     Raises
     ------
     StepFailure
-        Nothing changes with the load factor.
+        The tangent is singular, or nothing changes with the load factor.
     """
+    factors = factorise(system, solution.assembly) if factors is None else factors
     trial, discretisation = solution.trial, system.discretisation
     per_load = system.per_load(trial, solution.assembly, factors)
     d_alpha = discretisation.recover(per_load) - discretisation.recover(np.zeros_like(per_load))

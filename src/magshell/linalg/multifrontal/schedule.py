@@ -15,7 +15,7 @@ from magshell.arrays import IntArray
 from magshell.linalg.multifrontal.fronts import Fronts
 
 # Operations below which a factorisation is one task; the largest share of them that a task of several may have.
-SMALL, LARGEST_SHARE = 1e8, 1 / 12
+SMALL, LARGEST_SHARE = 1e9, 1 / 12
 
 
 class Schedule(NamedTuple):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import weakref
 from concurrent.futures import ThreadPoolExecutor
+from queue import SimpleQueue
 from typing import NamedTuple
 
 import numpy as np
@@ -45,14 +47,14 @@ class MultifrontalFactors(ScaledFactors):
     Where that is unstable, which the backward error of every solution shows, SuperLU takes over.
     """
 
-    def __init__(self, analysis: Analysis, scaled: Scaled) -> None:
+    def __init__(self, analysis: Analysis, scaled: Scaled, stores: list[elimination.Factors]) -> None:
         super().__init__(scaled)
         self._scaled = scaled
         self._analysis = analysis
         self._other: SuperLUFactors | None = None
         fronts, symmetric = analysis.fronts, scaled.asymmetry < SYMMETRIC
-        upper = 0 if symmetric else fronts.upper[-1]
-        self._factors = elimination.Factors(np.zeros(fronts.lower[-1]), np.zeros(upper), symmetric)
+        self._factors = _store(stores, fronts, symmetric)
+        self._gone = weakref.finalize(self, stores.append, self._factors)
         elimination.scatter(self.matrix.indptr, self.matrix.data, analysis.entries, self._factors)
         least = _eliminate(analysis, self._factors)
         if not VANISHING < least < np.inf:
@@ -95,6 +97,7 @@ class MultifrontalFactors(ScaledFactors):
         return out
 
     def _take_over(self) -> SuperLUFactors:
+        self._gone.detach()
         self._factors = elimination.Factors(np.empty(0), np.empty(0), False)
         return SuperLUFactors(self._scaled)
 
@@ -107,6 +110,7 @@ class Multifrontal:
     def __init__(self) -> None:
         self.factorisations = 0
         self._analysis: Analysis | None = None
+        self._stores: list[elimination.Factors] = []
 
     def factorise(self, matrix: sp.csc_array) -> Factorisation:
         """See `LinearSolver`."""
@@ -116,24 +120,41 @@ class Multifrontal:
             fronts, entries = analyse(matrix.indptr, matrix.indices)
             analysis = Analysis(matrix.indptr, matrix.indices, fronts, entries, schedule_of(fronts))
             self._analysis = analysis
-        return MultifrontalFactors(analysis, scaled(matrix))
+        return MultifrontalFactors(analysis, scaled(matrix), self._stores)
+
+
+def _store(stores: list[elimination.Factors], fronts: Fronts, symmetric: bool) -> elimination.Factors:
+    """Panels of zeros: those of factors that are gone, where they fit, as new memory is slow at its first use."""
+    lower, upper = fronts.lower[-1], 0 if symmetric else fronts.upper[-1]
+    fitting = [store for store in stores if (store.lower.size, store.upper.size) == (lower, upper)]
+    stores.clear()
+    if not fitting:
+        return elimination.Factors(np.zeros(lower), np.zeros(upper), symmetric)
+    fitting[0].lower[:], fitting[0].upper[:] = 0.0, 0.0
+    return fitting[0]
 
 
 def _eliminate(analysis: Analysis, factors: elimination.Factors) -> float:
     """All tasks, each by one thread at a time, then the top; returns the least pivot's magnitude."""
     schedule, blas = analysis.schedule, blas_of(factors.lower.dtype)
     tree = elimination.Tree(schedule.child_pointer, schedule.child, schedule.update_at)
-    kept = np.empty(schedule.kept)
+    kept, rooms = np.empty(schedule.kept), SimpleQueue[elimination.Room]()
+    workers = max(1, min(threads(), len(schedule.tasks)))
+    for _ in range(workers):
+        stack, update, panel = (np.empty(size) for size in (schedule.stack, schedule.largest, schedule.widest))
+        rooms.put(elimination.Room(stack, update, panel, kept))
 
     def run(sequence: IntArray) -> float:
-        room = elimination.Room(np.empty(schedule.stack), np.empty(schedule.largest), np.empty(schedule.widest), kept)
-        return elimination.eliminate(sequence, analysis.fronts, tree, factors, room, blas)
+        room = rooms.get()
+        try:
+            return elimination.eliminate(sequence, analysis.fronts, tree, factors, room, blas)
+        finally:
+            rooms.put(room)
 
     with one_blas_thread():
-        workers = min(threads(), len(schedule.tasks))
         if workers > 1:
             with ThreadPoolExecutor(workers) as pool:
-                least = list(pool.map(run, schedule.tasks))
+                least = [*pool.map(run, schedule.tasks)]
         else:
             least = [run(sequence) for sequence in schedule.tasks]
-        return min(*least, run(schedule.top)) if least else run(schedule.top)
+        return min([*least, run(schedule.top)])
