@@ -93,6 +93,19 @@ def test_a_symmetric_matrix_needs_half_the_room():
     assert symmetric._factors.upper.size == 0
 
 
+def test_memory_that_serves_again_takes_the_new_matrix_as_it_is():
+    """One front has no upper panel, so that symmetric and other matrices fit the same memory."""
+    one = make_solver("multifrontal")
+    right_side = np.arange(1.0, 4.0)
+    matrix = sp.csc_array([[4.0, 1.0, 2.0], [1.0, 5.0, 1.0], [2.0, 1.0, 6.0]])
+    one.factorise(matrix).solve(right_side)
+    matrix.data[:] = [4.0, 3.0, 2.0, -1.0, 5.0, 1.0, 0.5, -2.0, 6.0]
+    factors = one.factorise(matrix)
+    assert not factors._factors.symmetric
+    once = factors._solve_once(factors.scale * right_side, False)
+    assert np.allclose(factors.matrix @ once, factors.scale * right_side, rtol=1e-14)
+
+
 def test_the_same_bits_with_any_number_of_threads(monkeypatch):
     """On a matrix that is divided into tasks."""
     monkeypatch.setattr(schedule, "SMALL", 1e4)

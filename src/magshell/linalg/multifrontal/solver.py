@@ -67,6 +67,7 @@ class MultifrontalFactors(ScaledFactors):
         return int(elimination.negative_pivots(self._analysis.fronts, self._factors.lower))
 
     def solve_scaled(self, right_side: FloatArray, transposed: bool = False) -> FloatArray:
+        """See `ScaledFactors`."""
         if self._other is None:
             try:
                 return self._refined(right_side, transposed and not self._factors.symmetric)
@@ -131,7 +132,7 @@ def _store(stores: list[elimination.Factors], fronts: Fronts, symmetric: bool) -
     if not fitting:
         return elimination.Factors(np.zeros(lower), np.zeros(upper), symmetric)
     fitting[0].lower[:], fitting[0].upper[:] = 0.0, 0.0
-    return fitting[0]
+    return fitting[0]._replace(symmetric=symmetric)
 
 
 def _eliminate(analysis: Analysis, factors: elimination.Factors) -> float:
