@@ -7,10 +7,9 @@ suffice it tries again for ever, deaf to signals. So both happen here, after a l
 from __future__ import annotations
 
 import mmap
-import os
 from functools import cache
 
-from magshell.processes import cores
+from magshell.processes import threads_of
 
 # Of the address space, measured: a work array has 32 MiB, a thread one of its own and a stack, the library 40 MiB.
 WORK_ARRAY, THREAD, LIBRARY = 64 << 20, 48 << 20, 64 << 20
@@ -37,8 +36,7 @@ def allocate_buffers() -> None:
     """
     if not is_limited():
         return
-    asked = os.environ.get("OPENBLAS_NUM_THREADS") or os.environ.get("OMP_NUM_THREADS") or ""
-    threads = int(asked) if asked.isdecimal() else cores()
+    threads = threads_of("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS")
     loading = LIBRARY + THREAD * min(threads, MOST_THREADS)
     _require(loading)
     import numpy as np

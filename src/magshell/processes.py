@@ -17,6 +17,12 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
+def threads_of(*variables: str) -> int:
+    """Threads that the first of some environment variables with a number asks for, or the cores."""
+    asked = (os.environ.get(name, "") for name in variables)
+    return next((int(number) for number in asked if number.isdecimal() and int(number) > 0), cores())
+
+
 @contextmanager
 def interrupts_wait() -> Iterator[None]:
     """Ctrl-C is held back while processes are started, and they never hear it: the parent reacts and tells them."""

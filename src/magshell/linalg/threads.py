@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
 from typing import Any
 
 from magshell.openblas import is_limited
-from magshell.processes import cores
+from magshell.processes import threads_of
 
 
 def threads() -> int:
@@ -19,8 +18,7 @@ def threads() -> int:
     """
     if is_limited():
         return 1
-    wanted = os.environ.get("OMP_NUM_THREADS", "")
-    return int(wanted) if wanted.isdecimal() and int(wanted) > 0 else cores()
+    return threads_of("OMP_NUM_THREADS")
 
 
 @cache

@@ -66,12 +66,12 @@ def _room() -> int | None:
 
     VTK dies of a picture that it finds no memory for, and a new process has more left than this one.
     """
-    try:
-        import resource
+    if not is_limited():
+        return None
+    import resource
 
-        limit = resource.getrlimit(resource.RLIMIT_AS)[0]
-        if limit == resource.RLIM_INFINITY:
-            return None
+    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+    try:
         import pyvista  # noqa: F401
 
         found = re.search(r"VmSize:\s+(\d+)", pathlib.Path("/proc/self/status").read_text(encoding="ascii"))

@@ -19,13 +19,6 @@ from magshell.compiled import inline
 AS_IT_IS, TRANSPOSED = (np.uint8(ord(letter)) for letter in "NT")
 
 
-class Blas(NamedTuple):
-    """Address of the product of one precision, and the number one in it."""
-
-    gemm: int
-    one: Any
-
-
 class Panel(NamedTuple):
     """A matrix in memory: address of its first entry, rows, columns, and entries from one column to the next."""
 
@@ -35,10 +28,9 @@ class Panel(NamedTuple):
     stride: int
 
 
-def blas_of(dtype: np.dtype[Any]) -> Blas:
-    """The product of float64 or float32."""
-    name = {"float64": "dgemm", "float32": "sgemm"}[dtype.name]
-    return Blas(get_cython_function_address("scipy.linalg.cython_blas", name), dtype.type(1.0))
+def address_of_product() -> int:
+    """Of BLAS's dgemm."""
+    return int(get_cython_function_address("scipy.linalg.cython_blas", "dgemm"))
 
 
 @intrinsic  # type: ignore[untyped-decorator]
@@ -69,16 +61,16 @@ def address_of(values: AnyArray) -> Any:
 
 
 @inline
-def subtract_product(blas: Blas, A: Panel, B: Panel, transposed: bool, C: Panel) -> None:
+def subtract_product(dgemm: int, A: Panel, B: Panel, transposed: bool, C: Panel) -> None:
     """C -= A B, or C -= A Bᵀ."""
     if A.columns == 0 or C.rows == 0 or C.columns == 0:
         return
     inner = np.int32(A.columns)
     form = TRANSPOSED if transposed else AS_IT_IS
     _call(
-        blas.gemm,
+        dgemm,
         (
-            AS_IT_IS, form, np.int32(C.rows), np.int32(C.columns), inner, -blas.one, A.address, np.int32(A.stride),
-            B.address, np.int32(B.stride), blas.one, C.address, np.int32(C.stride),
+            AS_IT_IS, form, np.int32(C.rows), np.int32(C.columns), inner, -1.0, A.address, np.int32(A.stride),
+            B.address, np.int32(B.stride), 1.0, C.address, np.int32(C.stride),
         ),
     )  # fmt: skip

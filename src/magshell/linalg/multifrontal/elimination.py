@@ -18,7 +18,7 @@ import numpy as np
 
 from magshell.arrays import AnyArray, IntArray
 from magshell.compiled import Kernel, inline
-from magshell.linalg.multifrontal.blas import Blas, Panel, address_of, subtract_product
+from magshell.linalg.multifrontal.blas import Panel, address_of, subtract_product
 from magshell.linalg.multifrontal.fronts import Entries, Fronts
 
 # Columns that are eliminated by loops, and rows of them that the cache keeps; columns of a symmetric update at a time.
@@ -73,7 +73,7 @@ def scatter(indptr: IntArray, data: AnyArray, entries: Entries, factors: Factors
 
 
 @Kernel
-def eliminate(sequence: IntArray, fronts: Fronts, tree: Tree, factors: Factors, room: Room, blas: Blas) -> float:
+def eliminate(sequence: IntArray, fronts: Fronts, tree: Tree, factors: Factors, room: Room, dgemm: int) -> float:
     """Eliminate the pivots of a sequence of fronts; returns the least pivot's magnitude."""
     lower, upper, symmetric = factors.lower, factors.upper, factors.symmetric
     width = lower.itemsize
@@ -86,11 +86,11 @@ def eliminate(sequence: IntArray, fronts: Fronts, tree: Tree, factors: Factors, 
         for c in range(tree.child_pointer[s], tree.child_pointer[s + 1]):
             _add_update(tree.child[c], s, fronts, tree, factors, room)
         block = Panel(at_lower + width * first, k, k, stride)
-        least = min(least, _factorise_block(lower, first, block, symmetric, blas, width))
+        least = min(least, _factorise_block(lower, first, block, symmetric, dgemm, width))
         if r == 0:
             continue
         L = Panel(block.address + width * k, r, k, stride)
-        _divide(blas, (lower, block, first), (lower, L, first + k), False)
+        _divide(dgemm, (lower, block, first), (lower, L, first + k), False)
         if symmetric:
             U = Panel(address_of(room.panel), r, k, r)
             for j in range(k):
@@ -99,12 +99,12 @@ def eliminate(sequence: IntArray, fronts: Fronts, tree: Tree, factors: Factors, 
                     room.panel[j * r + i] = pivot * lower[first + j * stride + k + i]
         else:
             U = Panel(address_of(upper) + width * fronts.upper[s], r, k, r)
-            _divide(blas, (lower, block, first), (upper, U, fronts.upper[s]), True)
+            _divide(dgemm, (lower, block, first), (upper, U, fronts.upper[s]), True)
         chunk = CHUNK if symmetric else r
         for j in range(0, r, chunk):
             columns = min(chunk, r - j)
             subtract_product(
-                blas,
+                dgemm,
                 Panel(L.address + width * j, r - j, k, stride),
                 Panel(U.address + width * j, columns, k, r),
                 True,
@@ -160,7 +160,7 @@ def _extend(
 
 
 @inline
-def _factorise_block(values: AnyArray, first: int, block: Panel, symmetric: bool, blas: Blas, width: int) -> float:
+def _factorise_block(values: AnyArray, first: int, block: Panel, symmetric: bool, dgemm: int, width: int) -> float:
     """LU of a pivot block by strips of columns; of a symmetric one only the lower triangle is given."""
     k, stride, least = block.rows, block.stride, np.inf
     for b in range(0, k, STRIP):
@@ -174,7 +174,7 @@ def _factorise_block(values: AnyArray, first: int, block: Panel, symmetric: bool
             break
         corner = Panel(block.address + width * (b * stride + b), e - b, e - b, stride)
         below = Panel(block.address + width * (b * stride + e), k - e, e - b, stride)
-        _divide(blas, (values, corner, first + b * stride + b), (values, below, first + b * stride + e), False)
+        _divide(dgemm, (values, corner, first + b * stride + b), (values, below, first + b * stride + e), False)
         for j in range(e, k):
             for i in range(b, e):
                 if symmetric:
@@ -187,7 +187,7 @@ def _factorise_block(values: AnyArray, first: int, block: Panel, symmetric: bool
             columns = min(chunk, k - j)
             top = j if symmetric else e
             subtract_product(
-                blas,
+                dgemm,
                 Panel(block.address + width * (b * stride + top), k - top, e - b, stride),
                 Panel(block.address + width * (j * stride + b), e - b, columns, stride),
                 False,
@@ -197,7 +197,7 @@ def _factorise_block(values: AnyArray, first: int, block: Panel, symmetric: bool
 
 
 @inline
-def _divide(blas: Blas, triangle: tuple[AnyArray, Panel, int], right: tuple[AnyArray, Panel, int], lower: bool) -> None:
+def _divide(dgemm: int, triangle: tuple[AnyArray, Panel, int], right: tuple[AnyArray, Panel, int], lower: bool) -> None:
     """X := X U⁻¹, or X := X L⁻ᵀ with ones on the diagonal of L, strip by strip.
 
     Parameters
@@ -215,7 +215,7 @@ def _divide(blas: Blas, triangle: tuple[AnyArray, Panel, int], right: tuple[AnyA
         at = block.address + width * (b if lower else b * block.stride)
         before = Panel(at, e - b if lower else b, b if lower else e - b, block.stride)
         subtract_product(
-            blas,
+            dgemm,
             Panel(X.address, X.rows, b, X.stride),
             before,
             lower,

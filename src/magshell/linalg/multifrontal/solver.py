@@ -13,7 +13,7 @@ import scipy.sparse as sp
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.linalg.factorisation import Factorisation, Scaled, ScaledFactors, scaled
 from magshell.linalg.multifrontal import elimination, solution
-from magshell.linalg.multifrontal.blas import blas_of
+from magshell.linalg.multifrontal.blas import address_of_product
 from magshell.linalg.multifrontal.fronts import Entries, Fronts, analyse
 from magshell.linalg.multifrontal.schedule import Schedule, schedule_of
 from magshell.linalg.superlu import SuperLUFactors
@@ -137,7 +137,7 @@ def _store(stores: list[elimination.Factors], fronts: Fronts, symmetric: bool) -
 
 def _eliminate(analysis: Analysis, factors: elimination.Factors) -> float:
     """All tasks, each by one thread at a time, then the top; returns the least pivot's magnitude."""
-    schedule, blas = analysis.schedule, blas_of(factors.lower.dtype)
+    schedule, dgemm = analysis.schedule, address_of_product()
     tree = elimination.Tree(schedule.child_pointer, schedule.child, schedule.update_at)
     kept, rooms = np.empty(schedule.kept), SimpleQueue[elimination.Room]()
     workers = max(1, min(threads(), len(schedule.tasks)))
@@ -148,7 +148,7 @@ def _eliminate(analysis: Analysis, factors: elimination.Factors) -> float:
     def run(sequence: IntArray) -> float:
         room = rooms.get()
         try:
-            return elimination.eliminate(sequence, analysis.fronts, tree, factors, room, blas)
+            return elimination.eliminate(sequence, analysis.fronts, tree, factors, room, dgemm)
         finally:
             rooms.put(room)
 
