@@ -16,7 +16,7 @@ import time
 import numpy as np
 from arm import arm
 
-from magshell.assembly import Discretisation
+from magshell.equations.assembly import Discretisation
 from magshell.linalg import SOLVERS, make_solver, nested_dissection
 
 

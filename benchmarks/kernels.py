@@ -15,7 +15,7 @@ from collections.abc import Callable
 import numpy as np
 from arm import arm
 
-from magshell.assembly import LEVELS, Discretisation
+from magshell.equations.assembly import LEVELS, Discretisation
 from magshell.linalg import nested_dissection
 from magshell.shell.elements import ELEMENTS, ElementType
 from magshell.shell.point import SIZE

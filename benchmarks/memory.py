@@ -13,7 +13,7 @@ import subprocess
 import sys
 
 import magshell as ms
-from magshell.assembly import Discretisation
+from magshell.equations.assembly import Discretisation
 from magshell.linalg import make_solver, nested_dissection
 from magshell.solver.memory import need_of
 

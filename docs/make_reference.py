@@ -21,7 +21,7 @@ from pydantic_core import PydanticUndefined
 
 import magshell as ms
 from magshell import units
-from magshell.output.registry import OUTPUTS
+from magshell.evaluation.outputs import OUTPUTS
 from magshell.problem import examples, fields, schema
 
 PAGE = pathlib.Path(__file__).parent / "problem-file.md"

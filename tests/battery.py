@@ -17,15 +17,15 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from magshell import magnetics, materials
-from magshell.assembly import Discretisation
-from magshell.loading import Loading
+from magshell.equations.assembly import Discretisation
 from magshell.magnetics import UniformField, remanence
 from magshell.mesh import Mesh, rectangle, split
-from magshell.model import Shell
+from magshell.model.course import Loading
+from magshell.model.shell import Shell
+from magshell.model.supports import resolve
 from magshell.shell.elements import ELEMENTS, QUADRATIC
 from magshell.shell.normals import nodal_normals
 from magshell.shell.state import State
-from magshell.supports import resolve
 
 PARAMETERS = {
     "shear_modulus": 1.0,

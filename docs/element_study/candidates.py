@@ -14,15 +14,15 @@ from scipy.spatial.transform import Rotation
 import magshell as ms
 from element_study.cases import built_in, moved
 from magshell import assembly
-from magshell.assembly import Discretisation
-from magshell.loading import Loading
-from magshell.loads import Force
+from magshell.equations.assembly import Discretisation
 from magshell.mesh import Mesh
+from magshell.model.course import Loading
+from magshell.model.loads import Force
+from magshell.model.supports import resolve
 from magshell.shell import geometry
 from magshell.shell.elements import PAPER, QUADRATIC, ElementType
 from magshell.shell.elements.definition import Rule, gauss
 from magshell.shell.normals import nodal_normals
-from magshell.supports import resolve
 
 THIN = 0.01
 """Thickness of the unit elements whose eigenvalues are counted."""

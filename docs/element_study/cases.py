@@ -11,8 +11,8 @@ import numpy as np
 
 import magshell as ms
 from magshell import problem
-from magshell.loads import Force
 from magshell.mesh import Mesh
+from magshell.model.loads import Force
 from magshell.problem.building import build
 
 MEMBERS = ("quadratic", "paper")

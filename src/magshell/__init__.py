@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from magshell import mesh, problem, results
     from magshell.errors import InputError, MeshError, SolveError
-    from magshell.loads import Force, Gravity, Moment, Pressure, Traction
     from magshell.magnetics import (
         DeformationGradientEnergy,
         MicropolarCouple,
@@ -20,17 +19,19 @@ if TYPE_CHECKING:
         remanence,
     )
     from magshell.materials import MicropolarMooneyRivlin, MicropolarNeoHookean, MicropolarStVenantKirchhoff
-    from magshell.model import Model, Shell
+    from magshell.model.loads import Force, Gravity, Moment, Pressure, Traction
+    from magshell.model.model import Model
+    from magshell.model.shell import Shell
+    from magshell.model.stages import Stage
+    from magshell.model.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane
     from magshell.solver import CriticalPoint, Observer, Path, Settings, Step, resume, solve
     from magshell.solver.buckling import Buckling, BucklingMode, buckling
-    from magshell.stages import Stage
-    from magshell.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane
 
 __version__ = "0.1.0"
 
 _HOME = {
     "magshell.errors": ("InputError", "MeshError", "SolveError"),
-    "magshell.loads": ("Force", "Gravity", "Moment", "Pressure", "Traction"),
+    "magshell.model.loads": ("Force", "Gravity", "Moment", "Pressure", "Traction"),
     "magshell.magnetics": (
         "DeformationGradientEnergy",
         "MicroRotationEnergy",
@@ -38,11 +39,12 @@ _HOME = {
         "UniformField",
     ),
     "magshell.materials": ("MicropolarMooneyRivlin", "MicropolarNeoHookean", "MicropolarStVenantKirchhoff"),
-    "magshell.model": ("Model", "Shell"),
+    "magshell.model.model": ("Model",),
+    "magshell.model.shell": ("Shell",),
     "magshell.solver": ("CriticalPoint", "Observer", "Path", "Settings", "Step", "resume", "solve"),
     "magshell.solver.buckling": ("Buckling", "BucklingMode", "buckling"),
-    "magshell.stages": ("Stage",),
-    "magshell.supports": ("Clamp", "Prescribe", "SimpleSupport", "SymmetryPlane"),
+    "magshell.model.stages": ("Stage",),
+    "magshell.model.supports": ("Clamp", "Prescribe", "SimpleSupport", "SymmetryPlane"),
 }
 _MODULES = {
     "mesh": "magshell.mesh",

@@ -10,9 +10,9 @@ from scipy.spatial.transform import Rotation
 import magshell as ms
 from magshell.errors import InputError
 from magshell.mesh import Mesh, rectangle
-from magshell.rigid import free_motions
+from magshell.model.rigid import free_motions
+from magshell.model.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane, resolve
 from magshell.shell.elements import QUADRATIC
-from magshell.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane, resolve
 
 
 def plate():

@@ -19,7 +19,7 @@ from battery import (
 from shell import oracle
 
 from magshell.linalg import nested_dissection
-from magshell.supports import Clamp, Prescribe, SymmetryPlane
+from magshell.model.supports import Clamp, Prescribe, SymmetryPlane
 
 SUPPORTS = (
     SymmetryPlane("left", (1.0, 2.0, -0.5)),

@@ -10,8 +10,8 @@ from scipy.spatial.transform import Rotation
 import magshell as ms
 from magshell.errors import InputError
 from magshell.mesh import rectangle
+from magshell.model.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane, resolve
 from magshell.shell.elements import PAPER, QUADRATIC
-from magshell.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane, resolve
 
 U, W, PHI, OMEGA = slice(0, 3), slice(3, 6), 6, slice(7, 10)
 

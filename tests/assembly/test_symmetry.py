@@ -10,9 +10,9 @@ import pytest
 from battery import COUPLINGS, MATERIAL, example, name_of
 
 import magshell as ms
-from magshell import reflection
 from magshell.mesh import Mesh, rectangle
-from magshell.symmetry import MIRRORED, REVERSED, broken, planes, remanence_sign
+from magshell.model import reflection
+from magshell.model.symmetry import MIRRORED, REVERSED, broken, planes, remanence_sign
 
 NORMAL = np.array([1.0, 0.0, 0.0])
 REMANENT = np.array([0.4, 0.2, 0.5])

@@ -16,9 +16,9 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
+from magshell.evaluation.outputs import OUTPUTS
 from magshell.output.page import shown_steps, write_page
 from magshell.output.page import steps as page_steps
-from magshell.output.registry import OUTPUTS
 from magshell.output.tessellation import Tessellation
 from magshell.solver.critical import LIMIT_POINT, CriticalPoint
 from magshell.solver.path import Path

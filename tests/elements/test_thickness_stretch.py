@@ -10,8 +10,8 @@ import pytest
 
 import magshell as ms
 from magshell import problem
+from magshell.evaluation.points import evaluate
 from magshell.problem.building import build
-from magshell.shell.evaluation import evaluate
 
 
 @cache

@@ -13,10 +13,10 @@ import scipy.linalg
 
 import magshell as ms
 from elements.linear import SMALL, respond, rubber
-from magshell.assembly import Discretisation
+from magshell.equations.assembly import Discretisation
 from magshell.linalg import nested_dissection
-from magshell.loads.distribution import nodal_areas
 from magshell.mesh import Mesh, split
+from magshell.model.loads.distribution import nodal_areas
 
 each_pattern = pytest.mark.parametrize("pattern", ["rising", "alternating", "crossed"])
 

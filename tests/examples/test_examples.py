@@ -11,8 +11,8 @@ import pytest
 from examples.problems import read, value_at, variant
 from examples.references import FINE_MESH, SAME_MESH, STRIP_LENGTHS, Reference
 from magshell import Path, solve
+from magshell.evaluation.points import evaluate
 from magshell.reproduction.catalogue import EXAMPLES
-from magshell.shell.evaluation import evaluate
 from magshell.solver import Settings, Step
 
 SAME_FORMULATION = 5e-3

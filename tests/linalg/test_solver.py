@@ -13,7 +13,7 @@ from battery import MATERIAL, PATCHES, example, free_body, patch, random_state
 from magshell.errors import InputError
 from magshell.linalg import SOLVERS, SingularMatrix, make_solver, nested_dissection
 from magshell.linalg.factorisation import scaled
-from magshell.supports import Clamp, SimpleSupport
+from magshell.model.supports import Clamp, SimpleSupport
 
 
 def solver_or_skip(name):

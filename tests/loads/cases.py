@@ -12,12 +12,12 @@ from scipy.spatial.transform import Rotation
 
 import magshell as ms
 from loads.bodies import grouped
-from magshell.loads import Applied
 from magshell.mesh import Mesh
-from magshell.nodal import COLUMNS
+from magshell.model.loads import Applied
 from magshell.shell.elements import QUADRATIC
 from magshell.shell.normals import nodal_normals
 from magshell.shell.state import State
+from magshell.shell.unknowns import COLUMNS
 
 V = (0.7, -0.4, 1.1)
 DENSITY = 1.3

@@ -6,7 +6,7 @@ import numpy as np
 from battery import each_element, for_element
 
 from loads.cases import CASES, MESHES, crumpled, each_case, each_patch, moved, on_mesh, product
-from magshell.nodal import COMPONENTS
+from magshell.shell.unknowns import COMPONENTS
 
 CURVED = MESHES["curved patch"]
 
@@ -75,7 +75,7 @@ def test_what_is_said_of_a_potential(case):
 
 
 def test_every_kind_of_load_is_here():
-    from magshell import loads
+    from magshell.model import loads
 
     kinds = {getattr(getattr(loads, name), "kind", None) for name in loads.__all__} - {None}
     assert kinds == {case.load.kind for case in CASES.values()}

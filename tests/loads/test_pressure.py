@@ -8,12 +8,12 @@ from battery import each_element, for_element, with_points
 
 import magshell as ms
 from loads.cases import applied, at_rest, crumpled, each_patch, moved, product, shell_of
-from magshell.loads.functions import loaded
 from magshell.mesh import Mesh
 from magshell.mesh.edges import find_edges
-from magshell.nodal import COMPONENTS
+from magshell.model.loads.functions import loaded
 from magshell.shell.elements import QUADRATIC
 from magshell.shell.shape_functions import gauss_legendre
+from magshell.shell.unknowns import COMPONENTS
 
 P = 1.7
 

@@ -15,11 +15,11 @@ from solver.models import LENGTH, THICKNESS, central_difference, equation_number
 import magshell as ms
 from loads.bodies import arm, grouped
 from magshell import Settings, solve
-from magshell.assembly import Discretisation
+from magshell.equations.assembly import Discretisation
 from magshell.linalg import make_solver, nested_dissection
+from magshell.model.supports import Condition
 from magshell.shell.state import State
 from magshell.solver.newton import System, Trial, newton
-from magshell.supports import Condition
 
 SHARP = 1e-13
 BEGIN = 0.5

@@ -15,7 +15,7 @@ from magshell.errors import InputError
 from magshell.magnetics import remanence
 from magshell.materials import MicropolarMooneyRivlin, MicropolarNeoHookean
 from magshell.materials.law import strain_energy, stress_and_tangent
-from magshell.model import Shell
+from magshell.model.shell import Shell
 from materials.reference import ENERGIES
 
 TOLERANCE = 1e-12

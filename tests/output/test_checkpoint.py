@@ -12,11 +12,11 @@ import pytest
 from faults.limits import bounded
 
 from magshell.errors import InputError
+from magshell.evaluation.balance import Balance
 from magshell.output import checkpoint
 from magshell.output.checkpoint import CheckpointWriter, Origin, content, read_step, step_files
 from magshell.shell.state import State
 from magshell.solver import CriticalPoint, Settings, Step
-from magshell.solver.balance import Balance
 from magshell.solver.track import Slope
 from magshell.solver.waypoint import Waypoint
 

@@ -166,6 +166,6 @@ def test_the_words_are_few(path, buckled):
 
 
 def test_the_core_does_not_import_pictures():
-    code = "import sys, magshell.mesh, magshell.model, magshell.solver.path; print(*sys.modules)"
+    code = "import sys, magshell.mesh, magshell.model.model, magshell.solver.path; print(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
     assert not {"magshell.output.notebook", "magshell.output.sketch", "matplotlib", "PIL"} & set(loaded)

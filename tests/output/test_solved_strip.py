@@ -9,9 +9,9 @@ import pytest
 import pyvista
 
 import magshell as ms
+from magshell.evaluation.outputs import OUTPUTS
 from magshell.output.history import HistoryWriter
 from magshell.output.pictures import draw_pictures
-from magshell.output.registry import OUTPUTS
 from magshell.output.summary import write_summary
 from magshell.output.vtu import VtuWriter
 

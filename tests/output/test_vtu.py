@@ -7,7 +7,7 @@ import pytest
 import pyvista
 
 from magshell.errors import InputError
-from magshell.output.registry import OUTPUTS, find
+from magshell.evaluation.outputs import OUTPUTS, find
 from magshell.output.vtu import VtuWriter, save_path
 
 QUADRATIC_QUAD = int(pyvista.CellType.QUADRATIC_QUAD)

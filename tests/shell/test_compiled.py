@@ -85,7 +85,7 @@ def copied(tmp_path_factory):
 @pytest.mark.parametrize(
     ("source", "matters"),
     [
-        ("nodal.py", True),
+        ("shell/unknowns.py", True),
         ("shell/section.py", True),
         ("shell/elements/definition.py", True),
         ("materials/tensors.py", True),

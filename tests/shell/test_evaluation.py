@@ -6,7 +6,7 @@ import numpy as np
 from battery import PATCHES, REMANENCE, each_element, free_body, homogeneous, random_state, rest_and_stretch
 from scipy.spatial.transform import Rotation
 
-from magshell.shell.evaluation import evaluate
+from magshell.evaluation.points import evaluate
 from shell import jets, oracle
 
 

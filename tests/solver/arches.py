@@ -10,8 +10,8 @@ from battery import MATERIAL, example
 
 import magshell as ms
 from magshell import Model, Path, Stage
-from magshell.loading import Loading
 from magshell.mesh import Mesh
+from magshell.model.course import Loading
 from magshell.shell.state import State
 
 SPAN, RISE, THICKNESS = 10.0, 0.25, 0.1

@@ -15,7 +15,7 @@ from battery import scaled_error
 
 import magshell as ms
 from magshell import DeformationGradientEnergy, Model, Path, Settings, Step, solve
-from magshell.shell.evaluation import evaluate
+from magshell.evaluation.points import evaluate
 from solver.arches import arch, to_the_crown_at
 from solver.models import LENGTH, THICKNESS, rubber
 from solver.models import strip as field_strip

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as some
 
 from magshell import Stage, UniformField
-from magshell.loading import Amounts, Course, Loading
+from magshell.model.course import Amounts, Course, Loading
 
 NUMBER = some.floats(-2.0, 2.0)
 VECTOR = some.tuples(NUMBER, NUMBER, NUMBER)

@@ -10,8 +10,8 @@ import pytest
 
 import magshell as ms
 from magshell import Model
-from magshell.assembly import Discretisation
 from magshell.cli import main
+from magshell.equations.assembly import Discretisation
 from magshell.linalg import make_solver, nested_dissection
 from magshell.linalg.multifrontal.solver import Multifrontal, MultifrontalFactors
 from magshell.solver.memory import PER_ENTRY, Need, memory_free, need_of

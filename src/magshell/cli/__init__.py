@@ -63,7 +63,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     write_readably()
     given = _parser().parse_args(arguments)
-    logging.getLogger("magshell.symmetry").addHandler(logging.NullHandler())  # commands say what is broken themselves
+    # Commands say themselves what is broken.
+    logging.getLogger("magshell.model.symmetry").addHandler(logging.NullHandler())
     try:
         allocate_buffers()
         return int(given.command(given))

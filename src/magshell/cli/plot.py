@@ -41,10 +41,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """Draw."""
+    from magshell.evaluation.outputs import find
     from magshell.files import refuse_to_replace
     from magshell.output.animation import animate, draw_steps, require_writer
     from magshell.output.curve import draw_curve
-    from magshell.output.registry import find
     from magshell.output.rendering import RenderingUnavailable
     from magshell.output.style import is_ours
     from magshell.results import is_one, read

@@ -31,8 +31,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """Write the page."""
+    from magshell.evaluation.outputs import find
     from magshell.output.page import shown_steps, write_page
-    from magshell.output.registry import find
     from magshell.results import read
 
     find(given.color)

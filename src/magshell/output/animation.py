@@ -18,9 +18,9 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
+from magshell.evaluation.outputs import find
 from magshell.files import write_atomically
 from magshell.output.labels import bar_title
-from magshell.output.registry import find
 from magshell.output.scene import Camera, best_axes, darkroom, deformed, field_arrow, fit, lettered
 from magshell.output.shape import INCHES, SCENE, colour_bar, colour_scale, shown_values, triad
 from magshell.output.style import ACCENT, DPI, INK, said
@@ -73,7 +73,7 @@ def film(path: Path, steps: Sequence[Step], color: str, dpi: int = DPI) -> Itera
     steps : sequence of Step
         All that will be drawn; the scale of colours is that of them together.
     color : str
-        Output that colours the shape, as in `magshell.output.registry.find`.
+        Output that colours the shape, as in `magshell.evaluation.outputs.find`.
     dpi : int
         Size of the pictures: `magshell.output.shape.INCHES` times this, even numbers.
 
@@ -168,7 +168,7 @@ def animate(
     file : path
         `.gif`, or `.mp4`, `.mov`, `.m4v` (H.264; needs the extra `magshell[video]`).
     color : str
-        Output that colours the shape, as in `magshell.output.registry.find`; one scale for all frames.
+        Output that colours the shape, as in `magshell.evaluation.outputs.find`; one scale for all frames.
     advance : callable
         Told the share of the work that is done.
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray, IntArray
-from magshell.output.registry import find
+from magshell.evaluation.outputs import find
 from magshell.output.scene import (
     MARGIN,
     OVERSAMPLING,

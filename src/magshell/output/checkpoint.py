@@ -23,10 +23,10 @@ import numpy as np
 
 import magshell
 from magshell.errors import InputError
+from magshell.evaluation.balance import Balance
 from magshell.files import naming, write_atomically
 from magshell.output.archive import Unfit, digest, read_arrays
 from magshell.shell.state import State
-from magshell.solver.balance import Balance
 from magshell.solver.critical import CriticalPoint
 from magshell.solver.events import Observer
 from magshell.solver.path import Path, Step
@@ -35,7 +35,7 @@ from magshell.solver.waypoint import Waypoint
 from magshell.units import shortened
 
 if TYPE_CHECKING:
-    from magshell.assembly import Discretisation
+    from magshell.equations.assembly import Discretisation
     from magshell.solver.settings import Settings
 
 FORMAT, VERSION = "magshell checkpoint", 1

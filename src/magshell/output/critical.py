@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from magshell.files import append_line, csv_line, naming, write_atomically
-from magshell.nodal import COLUMNS
 from magshell.output.vtu import grid, vtu
+from magshell.shell.unknowns import COLUMNS
 from magshell.solver.events import Observer
 
 if TYPE_CHECKING:
-    from magshell.assembly import Discretisation
+    from magshell.equations.assembly import Discretisation
     from magshell.solver.buckling import BucklingMode
     from magshell.solver.critical import CriticalPoint
     from magshell.solver.settings import Settings

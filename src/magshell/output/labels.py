@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from magshell.output.registry import Output
+from magshell.evaluation.outputs import Output
 
 _SHOWN_UNITS = {"m": ("mm", 1e3), "1/m": ("1/mm", 1e-3), "T": ("mT", 1e3), "J": ("µJ", 1e6)}
 _TEX = {"h": "h/h_0", "phi": r"\varphi", "theta": r"\vartheta"}

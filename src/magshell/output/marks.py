@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
-from magshell.loads import Force, Gravity, Moment, Pressure, Traction
 from magshell.mesh.geometry import unit
+from magshell.model.loads import Force, Gravity, Moment, Pressure, Traction
+from magshell.model.supports import Clamp, Prescribe, SimpleSupport, Support, SymmetryPlane
 from magshell.output.style import ACCENT, COLOURS, INK
-from magshell.supports import Clamp, Prescribe, SimpleSupport, Support, SymmetryPlane
 from magshell.units import ACCELERATION, FLUX_DENSITY, FORCE, MOMENT, STRESS, show
 
 if TYPE_CHECKING:
-    from magshell.loads import Load
-    from magshell.model import Model
+    from magshell.model.loads import Load
+    from magshell.model.model import Model
 
 REMANENCE, LOAD, SUPPORTS = COLOURS[0], COLOURS[3], (COLOURS[2], COLOURS[4], COLOURS[6], COLOURS[5])
 MOST_ARROWS = 110

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from magshell.mesh import Mesh
-    from magshell.model import Model
+    from magshell.model.model import Model
     from magshell.solver.buckling import Buckling, BucklingMode
     from magshell.solver.path import Path
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
     from magshell.mesh import Mesh
-    from magshell.model import Model
+    from magshell.model.model import Model
 
 INCHES = (10.0, 7.0)
 SCENE = (0.0, 0.015, 0.71, 0.875)

@@ -10,8 +10,8 @@ import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError
+from magshell.evaluation.outputs import Output, find, without_round_off
 from magshell.output.labels import bar_title, shown_unit
-from magshell.output.registry import Output, find, without_round_off
 from magshell.output.scene import draw
 from magshell.output.style import ACCENT, DPI, GREY, TEXT, TICKS, deliver
 from magshell.output.tessellation import Tessellation
@@ -41,7 +41,7 @@ def draw_shape(
     step : int
         Which converged step; negative counts from the last.
     color : str
-        Output that colours the shape: a name or symbol of `magshell.output.registry`, with 1, 2 or 3 after
+        Output that colours the shape: a name or symbol of `magshell.evaluation.outputs`, with 1, 2 or 3 after
         the symbol for a component ("u3", "rotation", "thickness_ratio").
 
     Returns

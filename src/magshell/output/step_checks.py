@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from magshell.model import Model
+from magshell.model.model import Model
 from magshell.shell.state import State
 from magshell.solver.critical import BIFURCATION, LIMIT_POINT, CriticalPoint
 from magshell.solver.goals import goals_of

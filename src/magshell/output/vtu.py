@@ -12,13 +12,13 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from magshell.evaluation.outputs import OUTPUTS
 from magshell.files import naming, refuse_somebodys, with_suffix, write_atomically
-from magshell.output.registry import OUTPUTS
 from magshell.shell.triangle import REPEATED, SLOTS
 from magshell.solver.events import Observer
 
 if TYPE_CHECKING:
-    from magshell.assembly import Discretisation
+    from magshell.equations.assembly import Discretisation
     from magshell.solver.buckling import BucklingMode
     from magshell.solver.critical import CriticalPoint
     from magshell.solver.path import Path, Step
@@ -33,7 +33,7 @@ class VtuWriter(Observer):
     """Write every converged step as a file of quadratic quads and triangles, which ParaView draws curved.
 
     Points are reference positions (m): in ParaView, *Warp By Vector* with `displacement` shows the deformed
-    shape. Point and cell arrays are those of `magshell.output.registry`; their units and meaning are in the
+    shape. Point and cell arrays are those of `magshell.evaluation.outputs`; their units and meaning are in the
     field data `outputs`, `units` and `meanings` (bytes of UTF-8, a line each), beside `load_factor`, `step`,
     `flux_density` and `flux_density_magnitude` (T). The time in the PVD file is the load factor plus the number of the
     stages before, or, on a path that turns back, the number of the step.

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from magshell.loads.distribution import nodal_areas
+from magshell.model.loads.distribution import nodal_areas
 from magshell.problem import schema
 from magshell.problem.building import Problem
 from magshell.problem.wording import counted, quantity

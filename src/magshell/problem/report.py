@@ -8,18 +8,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from magshell import symmetry
 from magshell.arrays import FloatArray, IntArray
 from magshell.mesh import Mesh
 from magshell.mesh.files import FileMesh
 from magshell.mesh.geometry import centres, unit
 from magshell.mesh.quality import worst
-from magshell.nodal import width
+from magshell.model import symmetry
 from magshell.problem import load_report, remanence_report, schema, symmetry_report, triangle_report
 from magshell.problem.building import Problem
 from magshell.problem.fields import DIMENSION_OF_FIELD
 from magshell.problem.load_report import Strength
 from magshell.problem.wording import counted, quantity, vector
+from magshell.shell.unknowns import width
 from magshell.units import DENSITY, FLUX_DENSITY, LENGTH, STRESS, show
 
 VACUUM_PERMEABILITY = 4e-7 * math.pi

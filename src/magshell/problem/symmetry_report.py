@@ -6,16 +6,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from magshell import symmetry
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
 from magshell.mesh import Mesh
 from magshell.mesh.geometry import centres
+from magshell.model import symmetry
+from magshell.model.reflection import TYPED, polar
+from magshell.model.symmetry import MIRRORED, REVERSED, Plane
 from magshell.problem import schema
 from magshell.problem.building import Problem
 from magshell.problem.wording import quantity
-from magshell.reflection import TYPED, polar
-from magshell.symmetry import MIRRORED, REVERSED, Plane
 from magshell.units import FLUX_DENSITY
 
 # Kinds whose formula, of an entry for the whole part, also holds beyond a mirror plane.

@@ -14,7 +14,6 @@ from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.compiled import Kernel, inline
 from magshell.magnetics.law import Coupling
 from magshell.materials.law import Material
-from magshell.nodal import COMPONENTS
 from magshell.shell.bubble import Hold, hold_vector
 from magshell.shell.element import (
     Layout,
@@ -35,6 +34,7 @@ from magshell.shell.point import SIZE, workspace
 from magshell.shell.rotation import LAST, NEXT
 from magshell.shell.section import predicted_stress, section
 from magshell.shell.state import State
+from magshell.shell.unknowns import COMPONENTS
 
 ELIMINATION_STEPS = 30
 

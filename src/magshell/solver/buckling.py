@@ -21,10 +21,10 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from magshell.arrays import FloatArray
-from magshell.assembly import Discretisation
+from magshell.equations.assembly import Discretisation
 from magshell.errors import InputError, SolveError
 from magshell.linalg import SingularMatrix, make_solver, nested_dissection
-from magshell.model import Model
+from magshell.model.model import Model
 from magshell.shell.state import State
 from magshell.solver.critical import normalised
 from magshell.solver.eigenproblem import NoConvergence, roots_nearest_to_zero

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.assembly import Assembly
+from magshell.equations.assembly import Assembly
 from magshell.linalg import Factorisation, SingularMatrix
 from magshell.shell.state import State
 from magshell.solver.constraints import Metric, Sphere

@@ -23,10 +23,10 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.assembly import Discretisation
-from magshell.loading import Loading
+from magshell.equations.assembly import Discretisation
+from magshell.evaluation.points import evaluate, plane_stress_stretch
 from magshell.magnetics import law
-from magshell.shell.evaluation import evaluate, plane_stress_stretch
+from magshell.model.course import Loading
 from magshell.shell.state import State
 
 # Angle (degrees) turned within an element: what is safe, and beyond which the mesh is a likely cause.

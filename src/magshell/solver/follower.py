@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from magshell.solver.balance import Balance, balance
+from magshell.evaluation.balance import Balance, balance
 from magshell.solver.constraints import Constraint, Metric, Sphere
 from magshell.solver.critical import LIMIT_POINT, CriticalPoint, locate, passed
 from magshell.solver.diagnosis import diagnosis

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple, Protocol
 
-from magshell.loading import Course
-from magshell.model import Model
+from magshell.model.course import Course
+from magshell.model.model import Model
 from magshell.solver.constraints import Constraint, ProbeValue
 from magshell.solver.newton import Trial
 from magshell.solver.path import Step

@@ -25,12 +25,12 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from magshell.assembly import InvertedElement
+from magshell.equations.assembly import InvertedElement
+from magshell.evaluation.points import evaluate, micropolar_stretch, plane_stress_stretch
 from magshell.linalg import Factorisation
 from magshell.linalg.factorisation import scaled
-from magshell.loading import Loading
 from magshell.materials.law import Material, strain_energy
-from magshell.shell.evaluation import evaluate, micropolar_stretch, plane_stress_stretch
+from magshell.model.course import Loading
 from magshell.shell.loops import Body, Stresses
 from magshell.shell.state import State
 from magshell.solver.newton import StepFailure, System, Trial, factorise

@@ -13,10 +13,10 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse as sp
 
+from magshell.equations.numbering import columns_of
 from magshell.linalg import nested_dissection
 from magshell.linalg.multifrontal.fronts import fronts_of
-from magshell.model import Model
-from magshell.numbering import columns_of
+from magshell.model.model import Model
 
 # Measured by benchmarks/memory.py: bytes of the program itself, for each element, and for each entry of the factors.
 PROGRAM, PER_ELEMENT = 300e6, 100e3

@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.assembly import Assembly, Discretisation, InvertedElement
+from magshell.equations.assembly import Assembly, Discretisation, InvertedElement
 from magshell.linalg import Factorisation, LinearSolver, SingularMatrix
-from magshell.loading import Course
+from magshell.model.course import Course
 from magshell.shell.loops import Stresses
 from magshell.shell.state import State
 from magshell.solver.constraints import Constraint, NoRoot

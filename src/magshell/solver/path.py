@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.assembly import Discretisation
+from magshell.equations.assembly import Discretisation
 from magshell.errors import InputError, suggest
-from magshell.loading import Course, Loading
-from magshell.model import Model
+from magshell.evaluation.balance import Balance, largest_imbalances
+from magshell.model.course import Course, Loading
+from magshell.model.model import Model
 from magshell.shell.state import State
-from magshell.solver.balance import Balance, largest_imbalances
 from magshell.solver.critical import CriticalPoint
 from magshell.solver.settings import Settings
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from magshell.arrays import FloatArray
-from magshell.loading import Amounts
+from magshell.model.course import Amounts
 from magshell.shell.state import State
 from magshell.solver.newton import StepFailure
 from magshell.solver.path import Path

@@ -6,10 +6,10 @@ import logging
 import time
 from collections.abc import Sequence
 
-from magshell.assembly import Discretisation
+from magshell.equations.assembly import Discretisation
 from magshell.errors import SolveError
 from magshell.linalg import make_solver, nested_dissection
-from magshell.model import Model
+from magshell.model.model import Model
 from magshell.solver.events import Observer
 from magshell.solver.follower import Follower
 from magshell.solver.newton import StepFailure, System

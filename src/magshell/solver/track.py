@@ -13,9 +13,9 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.assembly import Discretisation
+from magshell.equations.assembly import Discretisation
 from magshell.linalg import Factorisation
-from magshell.loading import Course
+from magshell.model.course import Course
 from magshell.shell.loops import Stresses
 from magshell.shell.state import State
 from magshell.solver.constraints import Metric

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from magshell.assembly import Discretisation
+from magshell.equations.assembly import Discretisation
 from magshell.linalg import SOLVERS, nested_dissection
-from magshell.model import Model
+from magshell.model.model import Model
 from magshell.solver.critical import CriticalPoint
 from magshell.solver.goals import goals_of
 from magshell.solver.path import Path, Step

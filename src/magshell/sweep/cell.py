@@ -46,7 +46,7 @@ def solve_cell(name: str, text: str, folder: str, directory: str, stop: str) -> 
         WAITING if it was stopped.
     """
     path = pathlib.Path(directory)
-    logging.getLogger("magshell.symmetry").addHandler(logging.NullHandler())  # the sweep has said it of all cells
+    logging.getLogger("magshell.model.symmetry").addHandler(logging.NullHandler())  # the sweep has said it of all cells
     try:
         _solve(Source(name, text, pathlib.Path(folder)), path, StopWhenAsked(pathlib.Path(stop)))
     except KeyboardInterrupt:

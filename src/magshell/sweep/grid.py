@@ -7,8 +7,8 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from magshell import symmetry
 from magshell.errors import InputError, NothingLoads
+from magshell.model import symmetry
 from magshell.problem.alternatives import Setting, Value
 from magshell.problem.building import build
 from magshell.problem.changes import changed, label

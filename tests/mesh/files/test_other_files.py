@@ -40,7 +40,7 @@ def as_texts(grid, name, texts):
 @pytest.mark.parametrize("old", [False, True])
 def test_a_step_file_of_the_program(tmp_path, old):
     """Its element groups come back, and that its lengths are in m."""
-    from magshell.output.registry import OUTPUTS
+    from magshell.evaluation.outputs import OUTPUTS
     from magshell.output.vtu import _add_texts, vtu
 
     mesh = ms.mesh.rectangle(4e-3, 2e-3, (4, 2))

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
+from magshell.evaluation.outputs import OUTPUTS, Output, find, without_round_off
 from magshell.output.curve import LOAD_TEXT, abscissa, displacements, load_per_mT
 from magshell.output.labels import plain, shown_unit
 from magshell.output.page.arrays import quantised, span, text
 from magshell.output.page.stencils import stencils
-from magshell.output.registry import OUTPUTS, Output, find, without_round_off
 from magshell.output.scene import MOST_ELEMENTS_WITH_EDGES, best_axes
 from magshell.output.tessellation import element_edges
 

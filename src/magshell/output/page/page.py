@@ -44,7 +44,7 @@ def write_page(
     file : path
     title : str
     color : str
-        Output that colours the shape when the page opens, as in `magshell.output.registry.find`.
+        Output that colours the shape when the page opens, as in `magshell.evaluation.outputs.find`.
     about : sequence of (str, str)
         Labels and texts said of the problem before what the model itself tells.
     advance : callable

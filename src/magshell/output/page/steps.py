@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from magshell.output.registry import OUTPUTS
+from magshell.evaluation.outputs import OUTPUTS
 
 if TYPE_CHECKING:
     from magshell.solver.path import Path, Step

@@ -8,19 +8,20 @@ from dataclasses import dataclass
 
 from magshell import magnetics, materials
 from magshell.linalg import make_solver
-from magshell.loads import Force, Gravity, Load, Moment, Pressure, Traction
 from magshell.magnetics import UniformField
 from magshell.materials import Material
 from magshell.mesh import Mesh
-from magshell.model import Model, Shell
+from magshell.model.loads import Force, Gravity, Load, Moment, Pressure, Traction
+from magshell.model.model import Model
+from magshell.model.shell import Shell
+from magshell.model.stages import Stage
+from magshell.model.supports import Clamp, Prescribe, SimpleSupport, Support, SymmetryPlane
 from magshell.problem import schema
 from magshell.problem.building.located import at
 from magshell.problem.building.mesh import build_mesh
 from magshell.problem.building.remanence import build_remanence
 from magshell.problem.schema import ProblemFile
 from magshell.solver.settings import Settings
-from magshell.stages import Stage
-from magshell.supports import Clamp, Prescribe, SimpleSupport, Support, SymmetryPlane
 
 COUPLINGS = {
     "couple": magnetics.MicropolarCouple(),

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
-from magshell.nodal import COLUMNS
-from magshell.supports import FRAME_OF_FIELD, Constraints
+from magshell.model.supports import FRAME_OF_FIELD, Constraints
+from magshell.shell.unknowns import COLUMNS
 
 
 def to_global(constraints: Constraints, nodal: FloatArray) -> FloatArray:

@@ -8,23 +8,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
-from magshell.loads.checks import keep_history, located, vector
-from magshell.loads.cross import cross_matrix
-from magshell.loads.dead import DeadForces, nodal
-from magshell.loads.distribution import shares
-from magshell.loads.load import Applied, Pairs
+from magshell.model.loads.checks import keep_history, located, vector
+from magshell.model.loads.cross import cross_matrix
+from magshell.model.loads.dead import DeadForces, nodal
+from magshell.model.loads.distribution import shares
+from magshell.model.loads.load import Applied, Pairs
+from magshell.model.shell import Shell
 from magshell.shell import rotation
 from magshell.shell.state import State
-
-if TYPE_CHECKING:
-    from magshell.model import Shell
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.loads.load import Pairs
-from magshell.nodal import COLUMNS, COMPONENTS
+from magshell.model.loads.load import Pairs
 from magshell.shell.state import State
+from magshell.shell.unknowns import COLUMNS, COMPONENTS
 
 
 def nodal(field: str, vectors: FloatArray) -> FloatArray:

@@ -9,20 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
-from magshell.loads.checks import keep_history, located, vector
-from magshell.loads.dead import DeadForces
-from magshell.loads.distribution import nodal_volumes
-from magshell.loads.load import Applied
-
-if TYPE_CHECKING:
-    from magshell.model import Shell
+from magshell.model.loads.checks import keep_history, located, vector
+from magshell.model.loads.dead import DeadForces
+from magshell.model.loads.distribution import nodal_volumes
+from magshell.model.loads.load import Applied
+from magshell.model.shell import Shell
 
 
 @dataclass(frozen=True, eq=False)

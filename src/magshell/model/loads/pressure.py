@@ -4,7 +4,7 @@ On the mid-surface x = Σ N_I x_I with a_α = x,α it has, per unit parent area,
 
     F_I = p ∫ N_I a_1 × a_2,     K_IJ = -∂F_I/∂u_J = p ∫ N_I [N_J,1 a_2 - N_J,2 a_1]×.
 
-The functions are those of `magshell.loads.functions`: the nodes alone say where the loaded surface is. Their degree is
+The functions are those of `functions.py`: the nodes alone say where the loaded surface is. Their degree is
 2 in ξ and in η, so the integrands are of degree 5, and 3 × 3 points are exact: the sum of the forces, and of their
 moments at the deformed nodes, is that of the surface. On triangles, with the bubble, degrees are 7 in ξ and 8 in η, for
 which there are 5 × 5.
@@ -19,22 +19,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
-from magshell.loads.checks import keep_history, located, number
-from magshell.loads.cross import cross_matrix
-from magshell.loads.dead import nodal
-from magshell.loads.functions import loaded
-from magshell.loads.load import Applied, Pairs
 from magshell.mesh.edges import find_edges
+from magshell.model.loads.checks import keep_history, located, number
+from magshell.model.loads.cross import cross_matrix
+from magshell.model.loads.dead import nodal
+from magshell.model.loads.functions import loaded
+from magshell.model.loads.load import Applied, Pairs
+from magshell.model.shell import Shell
 from magshell.shell.shape_functions import gauss_legendre
 from magshell.shell.state import State
-
-if TYPE_CHECKING:
-    from magshell.model import Shell
 
 POINTS, POINTS_WITH_TRIANGLES = 3, 5
 

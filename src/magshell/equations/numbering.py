@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from magshell.arrays import AnyArray, IntArray
-from magshell.nodal import COLUMNS, width
+from magshell.shell.unknowns import COLUMNS, width
 
 
 @dataclass(frozen=True)

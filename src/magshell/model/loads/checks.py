@@ -10,8 +10,8 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
-from magshell.history import numbers
-from magshell.loads.load import Load
+from magshell.model.history import numbers
+from magshell.model.loads.load import Load
 
 
 def label(load: Load) -> str:

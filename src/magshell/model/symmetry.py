@@ -1,4 +1,4 @@
-"""What breaks the mirror planes of a model: field, loads, or where its shell lies (`magshell.reflection` says why)."""
+"""What breaks the mirror planes of a model: field, loads, or where its shell lies (see `reflection.py`)."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
-from magshell.loads import Force, Gravity, Load, Moment, Traction
 from magshell.mesh import Mesh
 from magshell.mesh.geometry import COINCIDENT
-from magshell.reflection import angle_to_plane, in_plane, is_normal
+from magshell.model.loads import Force, Gravity, Load, Moment, Traction
+from magshell.model.reflection import angle_to_plane, in_plane, is_normal
+from magshell.model.supports import SymmetryPlane
 from magshell.shell.normals import nodal_normals
-from magshell.supports import SymmetryPlane
 from magshell.units import ACCELERATION, FLUX_DENSITY, FORCE, MOMENT, STRESS, Dimension, show
 
 if TYPE_CHECKING:
-    from magshell.model import Model
+    from magshell.model.model import Model
 
 logger = logging.getLogger(__name__)
 

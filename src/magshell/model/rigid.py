@@ -7,7 +7,7 @@ import numpy as np
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.mesh import Mesh
-from magshell.supports import Constraints
+from magshell.model.supports import Constraints
 
 
 def free_motions(points: FloatArray, normals: FloatArray, nodes: IntArray, constraints: Constraints) -> FloatArray:

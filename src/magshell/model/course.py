@@ -16,7 +16,7 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.magnetics.field import UniformField
-from magshell.stages import Stage
+from magshell.model.stages import Stage
 
 # Stops closer to each other than this are one.
 SAME_STOP = 1e-12

@@ -6,25 +6,21 @@ undeformed mid-surface,
     ∫ t · δu + m · δω = Σ_I F_I · δu_I + C_I · δω_I,    F_I = t ∫ N_I,    C_I = m ∫ M_I,
 
 is that of nodal forces, with the functions N_I of the displacement and M_I of the micro-rotation. On an element they
-are those of its type (for the displacement see `magshell.loads.functions`); on an edge they are quadratic, those of the
+are those of its type (for the displacement see `functions.py`); on an edge they are quadratic, those of the
 micro-rotation linear where only corners carry it.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
-from magshell.loads.functions import loaded
+from magshell.model.loads.functions import loaded
+from magshell.model.shell import Shell
 from magshell.shell.elements import ElementType
 from magshell.shell.geometry import director_functions
 from magshell.shell.shape_functions import gauss_legendre
-
-if TYPE_CHECKING:
-    from magshell.model import Shell
 
 # Gauss points along an edge: they measure an edge that bends by a right angle to 1e-6 of its length.
 POINTS = 5

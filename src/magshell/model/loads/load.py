@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar, NamedTuple, Protocol
+from typing import ClassVar, NamedTuple, Protocol
 
 from magshell.arrays import FloatArray, IntArray
-
-if TYPE_CHECKING:
-    from magshell.model import Shell
-    from magshell.shell.state import State
+from magshell.model.shell import Shell
+from magshell.shell.state import State
 
 
 class Pairs(NamedTuple):
@@ -47,7 +45,7 @@ class Applied(Protocol):
         """Minus the derivative of the forces with respect to the increments at the pairs: (n, 3, 3), global axes.
 
         Rotations move by spins ϑ, R̃ -> exp(ϑ) R̃, and couples are those on the spins of the new state: a dead couple
-        has no derivative. That elements differentiate otherwise is the assembly's affair (`magshell.external`).
+        has no derivative. That elements differentiate otherwise is the equations' affair (`magshell.equations`).
         """
 
 

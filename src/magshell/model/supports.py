@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError, suggest
-from magshell.history import amplitudes
 from magshell.mesh import Mesh
-from magshell.nodal import COLUMNS
+from magshell.model.history import amplitudes
+from magshell.shell.unknowns import COLUMNS
 
 FIELDS = tuple(COLUMNS)
 AXES = np.eye(3)

@@ -10,22 +10,22 @@ import numpy as np
 import scipy.sparse as sp
 
 from magshell.arrays import FloatArray, IntArray
+from magshell.equations.external import External
+from magshell.equations.frames import to_frames, to_global
+from magshell.equations.numbering import columns_of, pattern_of, whole
 from magshell.errors import InputError
-from magshell.external import External
-from magshell.frames import to_frames, to_global
-from magshell.loading import Loading
-from magshell.loads import Pairs
+from magshell.evaluation.points import evaluate, micropolar_stretch, plane_stress_stretch
 from magshell.materials.law import strain_energy
-from magshell.model import Model
-from magshell.nodal import COLUMNS, COMPONENTS
-from magshell.numbering import columns_of, pattern_of, whole
+from magshell.model.course import Loading
+from magshell.model.loads import Pairs
+from magshell.model.model import Model
 from magshell.openblas import allocate_buffers
 from magshell.shell import loops, rotation
 from magshell.shell.bubble import held_energy, hold
 from magshell.shell.element import Layout
-from magshell.shell.evaluation import evaluate, micropolar_stretch, plane_stress_stretch
 from magshell.shell.geometry import interpolation, least_shifts, section_geometry, unit_forces
 from magshell.shell.state import State
+from magshell.shell.unknowns import COLUMNS, COMPONENTS
 
 LEVELS = 2
 ROUND_OFF = 8.0 * np.finfo(float).eps

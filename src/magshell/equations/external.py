@@ -7,12 +7,12 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray, IntArray
-from magshell.frames import bases
-from magshell.loads import Applied, Pairs
-from magshell.loads.cross import cross_matrix
-from magshell.nodal import COLUMNS, COMPONENTS
+from magshell.equations.frames import bases
+from magshell.model.loads import Applied, Pairs
+from magshell.model.loads.cross import cross_matrix
+from magshell.model.supports import Constraints
 from magshell.shell.state import State
-from magshell.supports import Constraints
+from magshell.shell.unknowns import COLUMNS, COMPONENTS
 
 Places = Callable[[Pairs], IntArray]
 

@@ -16,7 +16,7 @@ from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError, suggest
 
 if TYPE_CHECKING:
-    from magshell.assembly import Discretisation
+    from magshell.equations.assembly import Discretisation
     from magshell.shell.state import State
     from magshell.solver.path import Path, Step
 

@@ -13,10 +13,10 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.assembly import Discretisation
-from magshell.loading import Loading
+from magshell.equations.assembly import Discretisation
+from magshell.evaluation.points import evaluate
 from magshell.magnetics import law
-from magshell.shell.evaluation import evaluate
+from magshell.model.course import Loading
 from magshell.shell.state import State
 
 
