@@ -7,23 +7,26 @@ import inspect
 import os
 import pathlib
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
 from typing import Any, TypeVar
 
 import numba
-from numba.extending import overload
+import numpy as np
+from llvmlite import ir
+from numba.core import cgutils
+from numba.core.ccallback import CFunc
+from numba.extending import intrinsic
 
+from magshell.arrays import FloatArray, IntArray
 from magshell.files import lock
 from magshell.kernel_cache import Store, digest, log
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-LAWS = ("material", "coupling")
-# Sums may be reordered and fused (vector instructions), but NaN and infinity keep their meaning. Nobody calls from C.
-_OPTIONS = {"fastmath": {"reassoc", "contract", "nsz", "arcp"}, "error_model": "numpy", "no_cfunc_wrapper": True}
-_LAW_OPTIONS = _OPTIONS | {"_nrt": True}
-# By law: what `choose_by_type` compiles for it.
-_chosen: list[dict[type, Callable[..., Any]]] = []
+# Sums may be reordered and fused (vector instructions), but NaN and infinity keep their meaning.
+_LAW_OPTIONS = {"fastmath": {"reassoc", "contract", "nsz", "arcp"}, "error_model": "numpy"}
+_OPTIONS = _LAW_OPTIONS | {"no_cfunc_wrapper": True}  # nobody calls kernels from C
 
 
 def user_cache() -> pathlib.Path | None:
@@ -37,68 +40,140 @@ def user_cache() -> pathlib.Path | None:
     return None
 
 
-class Kernel:
-    """A compiled function of laws and arrays, called as the Python function it was made from.
+class _Kept:
+    """What has machine code in the cache, under a digest of its sources."""
 
-    Every combination of law types has a cache folder of its own, named by the laws and by a digest of their sources:
-    a law outside this package never stands in the way of a process that does not know it.
+    shown: str
+
+    def _store(self) -> Store:
+        raise NotImplementedError
+
+    def is_compiled(self) -> bool:
+        """Whether it waits in the cache, so that its first use is quick."""
+        return self._store().holds_any()
+
+    @contextlib.contextmanager
+    def _one_process(self) -> Iterator[None]:
+        """Hold back other processes that would compile the same, until they can read it from the cache."""
+        with contextlib.ExitStack() as until:
+            store = self._store()
+            if store.folder is not None and not store.holds_any():
+                with contextlib.suppress(OSError):
+                    store.folder.mkdir(parents=True, exist_ok=True)
+                    file = until.enter_context(open(store.folder / f"{store.name}.lock", "w"))
+                    if not lock(file):
+                        log.info("waiting for another process that compiles %s ...", self.shown)
+                        lock(file, wait=True)
+            yield
+
+
+class Kernel(_Kept):
+    """A compiled function of arrays, called as the Python function it was made from.
+
+    Parameters
+    ----------
+    function : callable
     """
 
     def __init__(self, function: Callable[..., Any]) -> None:
         self.py_func = function
-        names = list(inspect.signature(function).parameters)
-        self._laws = [names.index(name) for name in LAWS if name in names]
-        self._compiled: dict[tuple[type, ...], Callable[..., Any]] = {}
+        self.shown = f"the kernel {function.__name__}"
+        self._compiled: Callable[..., Any] | None = None
 
     def __call__(self, *arguments: Any) -> Any:
-        laws = tuple(type(arguments[position]) for position in self._laws)
-        if laws not in self._compiled:
-            with self._one_process(laws):
-                self._compiled[laws] = self._compile(laws)
-                return self._compiled[laws](*arguments)
-        return self._compiled[laws](*arguments)
+        if self._compiled is None:
+            with self._one_process():
+                dispatcher = numba.njit(**_OPTIONS, nogil=True)(self.py_func)
+                dispatcher._cache = self._store()
+                self._compiled = dispatcher
+                return dispatcher(*arguments)
+        return self._compiled(*arguments)
 
-    def _store(self, laws: tuple[type, ...]) -> Store:
-        """Where its machine code is kept; nowhere if it or a law has no source file, for instance typed at a prompt."""
-        name = self.py_func.__name__
-        shown = f"{name} for {' and '.join(law.__name__ for law in laws)}" if laws else name
-        root, folders = user_cache(), []
-        try:
-            version = digest(_file_of(self.py_func))
-            for law in laws:
-                functions = [chosen[law] for chosen in _chosen if law in chosen]
-                folders.append(f"{law.__module__}.{law.__name__}-{digest(*map(_file_of, (law, *functions)))}")
-        except (OSError, TypeError, SyntaxError):
-            root, version = None, ""
-        return Store(root and root / f"kernels-{version}", folders, name, shown)
+    def _store(self) -> Store:
+        """Where its machine code is kept; nowhere if it has no source file, for instance typed at a prompt."""
+        folder = _cache_folder("kernels", self.py_func)
+        return Store(folder, self.py_func.__name__, self.shown)
 
-    @contextlib.contextmanager
-    def _one_process(self, laws: tuple[type, ...]) -> Iterator[None]:
-        """Hold back other processes that would compile the same, until they can read it from the cache."""
-        with contextlib.ExitStack() as until:
-            store = self._store(laws)
-            if store.folder is not None and not store.holds_any():
-                with contextlib.suppress(OSError):
-                    store.folder.mkdir(parents=True, exist_ok=True)
-                    file = until.enter_context(open(store.folder / f"{self.py_func.__name__}.lock", "w"))
-                    if not lock(file):
-                        log.info("waiting for another process that compiles the kernel %s ...", self.py_func.__name__)
-                        lock(file, wait=True)
-            yield
 
-    def _compile(self, laws: tuple[type, ...]) -> Callable[..., Any]:
-        dispatcher = numba.njit(**_OPTIONS, nogil=True)(self.py_func)
-        dispatcher._cache = self._store(laws)
-        compiled: Callable[..., Any] = dispatcher
-        return compiled
+class Callback(_Kept):
+    """A C function of pointers and numbers made of a Python function, which kernels call by its address.
 
-    def is_compiled(self, *laws: type) -> bool:
-        """Whether it waits in the cache for these laws, so that its first call is quick."""
-        return self._store(laws).holds_any()
+    Nothing of it is in the machine code of a kernel that calls it, so it is compiled once, and the kernel once.
+
+    Parameters
+    ----------
+    function : callable
+        Of a pointer to float64 for each "p" of the signature and a float for each "d"; returns a float. It may allocate.
+    signature : str
+        For instance "ppd".
+    owner : type
+        The law that it belongs to: names the folder of the cache.
+    sources : sequence of callable
+        Further functions that it is made of.
+    """
+
+    def __init__(
+        self, function: Callable[..., float], signature: str, owner: type, sources: Sequence[Callable[..., Any]]
+    ) -> None:
+        self._function, self._owner, self._sources = function, owner, (owner, *sources)
+        kinds = {"p": numba.types.CPointer(numba.float64), "d": numba.float64}
+        self._signature = tuple(kinds[letter] for letter in signature), numba.float64
+        self.shown = f"the law {owner.__name__}"
+
+    @cached_property
+    def address(self) -> int:
+        """Address of the machine code in this process; the first use compiles it or reads it from the cache."""
+        with self._one_process():
+            made = CFunc(self._function, self._signature, locals={}, options=dict(_LAW_OPTIONS))
+            made._cache = self._store()
+            made.compile()
+            self._keep = made  # the code lives as long as this object
+            return int(made.address)
+
+    def _store(self) -> Store:
+        folder = _cache_folder(f"laws/{self._owner.__module__}.{self._owner.__name__}", *self._sources)
+        return Store(folder, self._owner.__name__, self.shown)
+
+
+def table(callbacks: Sequence[Callback], parameters: Sequence[Any]) -> tuple[IntArray, FloatArray]:
+    """Addresses (n,) of callbacks, and their parameters (n, most), padded with zeros."""
+    rows = [np.array(tuple(row), dtype=float) for row in parameters]
+    padded = np.zeros((len(rows), max(map(len, rows))))
+    for target, row in zip(padded, rows, strict=True):
+        target[: len(row)] = row
+    return np.array([callback.address for callback in callbacks], dtype=np.int64), padded
+
+
+def _cache_folder(name: str, *sources: Any) -> pathlib.Path | None:
+    """Folder of what is made of these functions and classes, in this version; None where one has no source file."""
+    root = user_cache()
+    try:
+        version = digest(*map(_file_of, sources))
+    except (OSError, TypeError, SyntaxError):
+        return None
+    return root and root / f"{name}-{version}"
 
 
 def _file_of(thing: Any) -> pathlib.Path:
     return pathlib.Path(inspect.getfile(thing))
+
+
+@intrinsic
+def call(typing: Any, address: Any, *kinds: Any) -> Any:
+    """Call the function at an address with the data pointers of arrays, and numbers; it returns a float."""
+
+    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        double = ir.DoubleType()
+        pointers = []
+        for kind, value in zip(kinds, cgutils.unpack_tuple(builder, values[1]), strict=True):
+            is_array = isinstance(kind, numba.types.Array)
+            pointers.append(context.make_array(kind)(context, builder, value).data if is_array else value)
+        types = [double.as_pointer() if isinstance(kind, numba.types.Array) else double for kind in kinds]
+        function = ir.FunctionType(double, types)
+        target = builder.inttoptr(values[0], function.as_pointer())
+        return builder.call(target, [builder.bitcast(p, t) for p, t in zip(pointers, types, strict=True)])
+
+    return numba.float64(address, numba.types.StarArgTuple(kinds)), generate
 
 
 def allocate(function: Function) -> Function:
@@ -116,16 +191,7 @@ def inline(function: Function) -> Function:
     return compiled
 
 
-def also_compiled(function: Callable[..., Any]) -> None:
-    """Let kernels call a plain Python function: it is compiled as a part of them."""
-    numba.extending.register_jitable(**_LAW_OPTIONS)(function)
-
-
-def choose_by_type(generic: Callable[..., Any], implementations: dict[type, Callable[..., Any]]) -> None:
-    """Let kernels that call `generic(law, …)` use the implementation registered for the NamedTuple type of `law`."""
-
-    def choose(law: Any, *arguments: Any) -> Callable[..., Any] | None:
-        return implementations.get(getattr(law, "instance_class", type(None)))
-
-    _chosen.append(implementations)
-    overload(generic, strict=False, jit_options=_LAW_OPTIONS)(choose)
+def also_compiled(function: Function) -> Function:
+    """Let kernels and laws call a plain Python function: it is compiled as a part of them."""
+    made: Function = numba.extending.register_jitable(**_LAW_OPTIONS)(function)
+    return made

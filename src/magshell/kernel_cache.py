@@ -16,7 +16,6 @@ import pathlib
 import pickle
 import sys
 import sysconfig
-from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
@@ -132,24 +131,22 @@ def _source_of(name: str) -> pathlib.Path | None:
 
 
 class Store:
-    """The files of one kernel, as Numba asks a dispatcher's cache for them.
+    """The files of one function, as Numba asks a dispatcher's cache for them.
 
     Parameters
     ----------
-    root : pathlib.Path or None
-        Folder of this version of the sources; it may be one that cannot be written. None: nothing is kept.
-    laws : sequence of str
-        What the kernel is compiled for, a name each with a digest: subfolders.
+    folder : pathlib.Path or None
+        Of this version of the sources; it may be one that cannot be written. None: nothing is kept.
     name : str
-        Of the kernel.
+        Of the function.
     shown : str
-        The kernel and its laws, for messages.
+        The same for messages.
     """
 
-    def __init__(self, root: pathlib.Path | None, laws: Sequence[str], name: str, shown: str) -> None:
-        self.root, self.folder = root, None if root is None else root.joinpath(*laws)
-        self.cache_path = str(self.folder)
-        self._name, self._shown = name, shown
+    def __init__(self, folder: pathlib.Path | None, name: str, shown: str) -> None:
+        self.folder, self.name = folder, name
+        self.cache_path = str(folder)
+        self._shown = shown
 
     def enable(self) -> None:
         """For Numba; it always is."""
@@ -162,7 +159,7 @@ class Store:
             found = self._read(self._file(self.folder, signature, context.codegen()))
         if found is not None:
             return CompileResult._rebuild(context, *found)
-        log.info("compiling the kernel %s (up to a minute) ...", self._shown)
+        log.info("compiling %s ...", self._shown)
         return None
 
     def save_overload(self, signature: Any, compiled: Any) -> None:
@@ -175,7 +172,7 @@ class Store:
             write_atomically(file, _CHECKSUM(payload).digest() + payload)
         except OSError as error:
             _warn_once(
-                f"{self.root}: compiled kernels cannot be kept there ({error.strerror or error}); "
+                f"{self.folder}: compiled kernels cannot be kept there ({error.strerror or error}); "
                 "they are compiled anew in each run"
             )
 
@@ -184,7 +181,7 @@ class Store:
         if self.folder is None:
             return False
         codegen = numba.core.registry.cpu_target.target_context.codegen()
-        return any(self.folder.glob(f"{self._name}-{_machine(codegen)}-*{SUFFIX}"))
+        return any(self.folder.glob(f"{self.name}-{_machine(codegen)}-*{SUFFIX}"))
 
     def _read(self, file: pathlib.Path) -> Any:
         """What a file holds; None where there is none, and where it is damaged: then it is removed."""
@@ -197,12 +194,12 @@ class Store:
             return pickle.loads(payload)
         with contextlib.suppress(OSError):
             file.unlink()
-        _warn_once(f"{self.root}: compiled kernels there are damaged; they are compiled anew")
+        _warn_once(f"{self.folder}: compiled kernels there are damaged; they are compiled anew")
         return None
 
     def _file(self, folder: pathlib.Path, signature: Any, codegen: Any) -> pathlib.Path:
         types = _CHECKSUM(repr(signature).encode()).hexdigest()[:16]
-        return folder / f"{self._name}-{_machine(codegen)}-{types}{SUFFIX}"
+        return folder / f"{self.name}-{_machine(codegen)}-{types}{SUFFIX}"
 
 
 def _machine(codegen: Any) -> str:

@@ -17,7 +17,7 @@ from magshell.solver.events import Observer
 from magshell.units import FLUX_DENSITY, show
 
 if TYPE_CHECKING:
-    from magshell.equations.assembly import Discretisation
+    from magshell.equations.discretisation import Discretisation
     from magshell.solver.critical import CriticalPoint
     from magshell.solver.events import Iteration
     from magshell.solver.path import Path, Step

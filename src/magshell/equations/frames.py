@@ -20,6 +20,8 @@ def to_frames(constraints: Constraints, nodal: FloatArray) -> FloatArray:
 
 
 def _turned(constraints: Constraints, nodal: FloatArray, rule: str) -> FloatArray:
+    if not len(constraints.frames):
+        return nodal
     turned = nodal.copy()
     for field, number in FRAME_OF_FIELD.items():
         oblique = np.flatnonzero(constraints.frame_of[:, number] >= 0)

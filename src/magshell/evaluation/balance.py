@@ -13,9 +13,10 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
 from magshell.evaluation.points import evaluate
 from magshell.magnetics import law
+from magshell.magnetics.law import OMEGA, M
 from magshell.model.course import Loading
 from magshell.shell.state import State
 
@@ -73,16 +74,14 @@ def magnetic_torque(discretisation: Discretisation, state: State, flux_density: 
     Per unit volume the law's forces f on m = F B̃ and c on the spin do the work -(f · δm + c · δω) in a rigid rotation:
     a torque -(m × f + c), which is (1/mu0) m × B for the couple.
     """
-    model, body = discretisation.model, discretisation.body
-    fields = evaluate(body, state)
-    volume = body.geometry.volume
-    m = np.einsum("epkxy,epy->xepk", fields.F, body.remanence)
-    n = np.broadcast_to(np.einsum("epxy,epy->xep", fields.R, body.remanence)[..., None], m.shape)
-    f, c = np.zeros(m.shape), np.zeros(m.shape)
-    unused = np.zeros((3, *m.shape)), np.zeros((3, *m.shape))
-    law.forces_and_tangent(model.coupling, m, n, flux_density, f, c, *unused)
-    torque = -(np.cross(m, f, axis=0) + c) * volume
-    return torque.sum(axis=(1, 2, 3)), float(np.linalg.norm(torque, axis=0).sum())
+    reference = discretisation.reference
+    fields, remanence = evaluate(reference, state), reference.remanence
+    m = np.einsum("epkxy,epky->epkx", fields.F, remanence)
+    n = np.einsum("epxy,epky->epkx", fields.R, remanence)
+    _, forces, _ = law.evaluate(discretisation.model.coupling, m, n, flux_density)
+    torque = -(np.cross(m, forces[..., M : M + 3]) + forces[..., OMEGA : OMEGA + 3])
+    torque *= reference.geometry.volume[..., None]
+    return torque.sum(axis=(0, 1, 2)), float(np.linalg.norm(torque, axis=-1).sum())
 
 
 def balance(discretisation: Discretisation, state: State, loading: Loading, residual: FloatArray) -> Balance:
@@ -99,7 +98,7 @@ def balance(discretisation: Discretisation, state: State, loading: Loading, resi
     constraints = discretisation.model.constraints
     held = np.where(constraints.fixed & discretisation.carried, residual, 0.0)
     reaction = discretisation.to_global(held)
-    load = discretisation.external.forces(state, loading.loads)
+    load = discretisation.loads.forces(state, loading.loads)
     position = discretisation.mesh.points + state.u
     director = discretisation.normals + state.w
     moments = np.cross(position, reaction[:, :3]) + np.cross(director, reaction[:, 3:6]) + reaction[:, 7:]

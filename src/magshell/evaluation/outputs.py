@@ -14,10 +14,10 @@ import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError, suggest
+from magshell.evaluation.converged import Converged, converged
+from magshell.shell.point import INTERNAL
 
 if TYPE_CHECKING:
-    from magshell.equations.assembly import Discretisation
-    from magshell.shell.state import State
     from magshell.solver.path import Path, Step
 
 
@@ -40,7 +40,7 @@ class Output:
     components : int
         1 for a scalar (one-dimensional array), 3 for a vector (in X1, X2, X3).
     evaluate : callable
-        (discretisation, state) to the array.
+        From what has converged to the array.
     """
 
     name: str
@@ -49,12 +49,12 @@ class Output:
     sentence: str
     where: Literal["point", "cell"]
     components: Literal[1, 3]
-    evaluate: Callable[[Discretisation, State], AnyArray]
+    evaluate: Callable[[Converged], AnyArray]
 
 
-def _element_group(discretisation: Discretisation, state: State) -> AnyArray:
-    numbers = np.zeros(len(discretisation.mesh.elements), dtype=np.int32)
-    for number, elements in enumerate(discretisation.mesh.element_groups.values(), start=1):
+def _element_group(converged: Converged) -> AnyArray:
+    numbers = np.zeros(len(converged.mesh.elements), dtype=np.int32)
+    for number, elements in enumerate(converged.mesh.element_groups.values(), start=1):
         numbers[elements] = number
     return numbers
 
@@ -69,7 +69,7 @@ _OUTPUTS = {
             "Displacement of the mid-surface.",
             "point",
             3,
-            lambda discretisation, state: state.u,
+            lambda converged: converged.state.u,
         ),
         Output(
             "director",
@@ -78,7 +78,7 @@ _OUTPUTS = {
             "Deformed director: unit normal of the undeformed mid-surface plus its difference vector w.",
             "point",
             3,
-            lambda discretisation, state: discretisation.nodal_director(state),
+            lambda converged: converged.director(),
         ),
         Output(
             "phi",
@@ -87,7 +87,7 @@ _OUTPUTS = {
             "Linear part of the thickness stretch.",
             "point",
             1,
-            lambda discretisation, state: discretisation.nodal_phi(state),
+            lambda converged: converged.phi(),
         ),
         Output(
             "rotation",
@@ -96,7 +96,7 @@ _OUTPUTS = {
             "Micro-rotation vector: along the axis, as long as the angle.",
             "point",
             3,
-            lambda discretisation, state: discretisation.nodal_rotation(state),
+            lambda converged: converged.rotation(),
         ),
         Output(
             "normal",
@@ -105,7 +105,7 @@ _OUTPUTS = {
             "Unit normal of the undeformed mid-surface.",
             "point",
             3,
-            lambda discretisation, state: discretisation.normals,
+            lambda converged: converged.discretisation.normals,
         ),
         Output(
             "remanence",
@@ -114,7 +114,7 @@ _OUTPUTS = {
             "Remanent flux density carried by the deformed body, F·Brem/J, mean over the element.",
             "cell",
             3,
-            lambda discretisation, state: discretisation.element_remanence(state),
+            lambda converged: converged.remanence(),
         ),
         Output(
             "thickness_ratio",
@@ -123,7 +123,7 @@ _OUTPUTS = {
             "Deformed over undeformed thickness, mean over the element.",
             "cell",
             1,
-            lambda discretisation, state: discretisation.element_thickness_ratio(state),
+            lambda converged: converged.thickness_ratio(),
         ),
         Output(
             "energy",
@@ -132,7 +132,7 @@ _OUTPUTS = {
             "Strain energy of the element.",
             "cell",
             1,
-            lambda discretisation, state: discretisation.element_energy(state),
+            lambda converged: converged.energies[:, INTERNAL],
         ),
         Output(
             "element_group",
@@ -154,9 +154,9 @@ def without_round_off(path: Path, output: Output, steps: Iterable[Step]) -> Iter
     That is 1e-9 of its largest component where the path is farthest from rest.
     """
     farthest = max(path.steps, key=lambda step: float(np.abs(step.state.u).max()))
-    noise = 1e-9 * float(np.abs(output.evaluate(path.discretisation, farthest.state)).max())
+    noise = 1e-9 * float(np.abs(output.evaluate(converged(path.discretisation, farthest))).max())
     for step in steps:
-        values = np.array(output.evaluate(path.discretisation, step.state), dtype=float)
+        values = np.array(output.evaluate(converged(path.discretisation, step)), dtype=float)
         values[np.abs(values) <= noise] = 0.0
         yield values
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.materials.law import Material, strain_energy
+from magshell.materials.law import Material
+from magshell.materials.law import evaluate as evaluate_law
 from magshell.shell import rotation
-from magshell.shell.loops import Body
+from magshell.shell.body import Reference
 from magshell.shell.state import State
 
 
@@ -31,9 +33,9 @@ class PointFields(NamedTuple):
     kappa: FloatArray
 
 
-def evaluate(body: Body, state: State, stretch_at_points: FloatArray | None = None) -> PointFields:
+def evaluate(reference: Reference, state: State, stretch_at_points: FloatArray | None = None) -> PointFields:
     """Deformation gradient, micro-rotation and wryness; φ from the nodes, or as given (elements, p)."""
-    geometry, shape, elements = body.geometry, body.shape, body.elements
+    geometry, shape, elements = reference.geometry, reference.shape, reference.body.elements
     rest, stretch = elements[:, : shape.director.shape[-1]], elements[:, : shape.phi.shape[-1]]
     a = geometry.A + np.einsum("epan,enx->epax", shape.u, state.u[elements])
     w = np.einsum("epan,enx->epax", shape.director, state.w[rest])
@@ -41,11 +43,11 @@ def evaluate(body: Body, state: State, stretch_at_points: FloatArray | None = No
     φ = np.einsum("epn,en->ep", shape.phi, state.phi[stretch]) if stretch_at_points is None else stretch_at_points
     enhanced = np.einsum("epam,emx->epax", shape.enhancement, state.alpha)
     z = geometry.z
-    g_tangent = a[:, :, None] + z[:, None, None] * dd[:, :, None]
+    g_tangent = a[:, :, None] + z[..., None, None] * dd[:, :, None]
     g_3 = (1.0 + 2.0 * z * φ[..., None])[..., None] * d[:, :, None]
     g = np.concatenate([g_tangent, g_3[:, :, :, None]], axis=3) + enhanced[:, :, None]
     F = np.einsum("epkax,epkay->epkxy", g, geometry.G)
-    if not body.layout.q:
+    if not reference.body.layout.q:
         R = np.broadcast_to(np.eye(3), (*a.shape[:2], 3, 3))
         return PointFields(F, R, np.zeros_like(a))
     q_nodes = state.q[rest]
@@ -58,29 +60,45 @@ def evaluate(body: Body, state: State, stretch_at_points: FloatArray | None = No
 
 
 def micropolar_stretch(fields: PointFields) -> FloatArray:
-    """U = R̃ᵀF, shape (3, 3, elements, p, k)."""
-    return np.moveaxis(np.einsum("epyx,epkyz->epkxz", fields.R, fields.F), (-2, -1), (0, 1))
+    """U = R̃ᵀF, shape (elements, p, k, 3, 3)."""
+    return np.einsum("epyx,epkyz->epkxz", fields.R, fields.F)
 
 
-def plane_stress_stretch(body: Body, state: State, material: Material) -> FloatArray:
+def of_materials(reference: Reference, materials: Sequence[Material], U: FloatArray) -> tuple[FloatArray, ...]:
+    """Energy (e, p, k), stress (e, p, k, 3, 3) and tangent (e, p, k, 3, 3, 3, 3) of the laws that hold at the points."""
+    made = reference.body.levels["material"]
+    W, P, C = np.empty(made.shape), np.empty((*made.shape, 3, 3)), np.empty((*made.shape, 3, 3, 3, 3))
+    for number, material in enumerate(materials):
+        at = made == number
+        W[at], P[at], C[at] = evaluate_law(material, U[at])
+    return W, P, C
+
+
+def plane_stress_stretch(reference: Reference, state: State, materials: Sequence[Material]) -> FloatArray:
     """φ (elements, p), 1/m, that makes the strain energy of each point stationary, by Newton's method.
 
-    It is what the kernels eliminate (`plane_stress.py`) where the remanence lies in the surface. The energy is
-    analytic: its first derivative comes from a complex step, the second from a difference of first ones.
+    It is what the kernels eliminate (`plane_stress.py`) where the remanence lies in the surface.
     """
-    z = body.geometry.z
-    step = 1e-4 / z[-1]
-
-    def slope(φ: FloatArray) -> FloatArray:
-        fields = evaluate(body, state, φ + 1e-30j / z[-1])
-        energy = np.sum(strain_energy(material, micropolar_stretch(fields)) * body.geometry.volume, axis=2)
-        return np.asarray(energy.imag * z[-1] / 1e-30)
-
-    φ = np.zeros(body.geometry.volume.shape[:2])
+    geometry = reference.geometry
+    outermost = np.abs(geometry.z).max(axis=2)
+    d = director(reference, state)
+    dF = 2.0 * np.einsum("epk,epx,epky->epkxy", geometry.z, d, geometry.G[..., 2, :])
+    φ = np.zeros(geometry.volume.shape[:2])
     for _ in range(30):
-        curvature = (slope(φ + step) - slope(φ - step)) / (2.0 * step)
-        increment = np.divide(-slope(φ), curvature, out=np.zeros_like(φ), where=body.geometry.volume[..., 0] > 0.0)
-        φ = φ + np.clip(increment, -0.3 / z[-1], 0.3 / z[-1])
-        if np.abs(increment).max() * z[-1] < 1e-12:
+        fields = evaluate(reference, state, φ)
+        dU = np.einsum("epyx,epkyz->epkxz", fields.R, dF)
+        _, P, C = of_materials(reference, materials, micropolar_stretch(fields))
+        slope = np.einsum("epk,epkxy,epkxy->ep", geometry.volume, P, dU)
+        curvature = np.einsum("epk,epkxy,epkxyzw,epkzw->ep", geometry.volume, dU, C, dU)
+        increment = np.divide(-slope, curvature, out=np.zeros_like(φ), where=geometry.volume[..., 0] > 0.0)
+        φ = φ + np.clip(increment, -0.3 / outermost, 0.3 / outermost)
+        if (np.abs(increment) * outermost).max() < 1e-12:
             break
     return φ
+
+
+def director(reference: Reference, state: State) -> FloatArray:
+    """Director d (elements, p, 3) at the points."""
+    functions = reference.shape.director
+    rest = reference.body.elements[:, : functions.shape[-1]]
+    return np.asarray(reference.geometry.D + np.einsum("epn,enx->epx", functions[:, :, 0], state.w[rest]))

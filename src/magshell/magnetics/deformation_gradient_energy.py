@@ -14,32 +14,25 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.magnetics.law import coupling_law
+from magshell.magnetics.law import M, coupling_law
 
 
-def _energy(coupling: DeformationGradientEnergy, m: FloatArray, n: FloatArray, B: FloatArray) -> float:
-    return -(m[0] * B[0] + m[1] * B[1] + m[2] * B[2]) / coupling.vacuum_permeability
-
-
-def _forces(
+def _law(
     coupling: DeformationGradientEnergy,
     m: FloatArray,
     n: FloatArray,
     B: FloatArray,
-    f: FloatArray,
-    c: FloatArray,
-    K_m: FloatArray,
-    K_ω: FloatArray,
-) -> None:
+    gradients: FloatArray,
+    forces: FloatArray,
+    tangent: FloatArray,
+) -> float:
+    mu0 = coupling.vacuum_permeability
     for i in range(3):
-        f[i] = -B[i] / coupling.vacuum_permeability
-        c[i] = 0.0
-        for l in range(3):
-            K_m[i, l] = 0.0
-            K_ω[i, l] = 0.0
+        forces[M + i] -= B[i] / mu0
+    return -(m[0] * B[0] + m[1] * B[1] + m[2] * B[2]) / mu0
 
 
-@coupling_law(forces=_forces, energy=_energy)
+@coupling_law(_law, has_energy=True)
 class DeformationGradientEnergy(NamedTuple):
     """Energy -(1/mu0) (F B̃) · B of Zhao et al.: the remanence is carried along and stretched by the material."""
 

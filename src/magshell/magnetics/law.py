@@ -1,24 +1,35 @@
-"""What a magnetic coupling law is, and how the kernels find the one in use.
+"""What a magnetic coupling law is, and how the kernels reach the one in use.
 
 A law says what the external flux density B does at a material point whose remanence B̃ (reference configuration) is
 carried along by the deformation gradient, m = F B̃, and by the micro-rotation, n = R̃ B̃. Per unit reference volume
 its virtual work on the residual is
 
-    r = f · δm + c · δω,      δω the spin of the micro-rotation,
+    r = f_m · δm + f_ω · δω + f_x · δx,      δω the spin of the micro-rotation, x the position,
 
-and its tangent, for increments (Δm, Δω) and the spin δω of the fixed chart exp(δω) R̃, is
+and its tangent, for increments of m, x and the spin δω of the fixed chart exp(δω) R̃, is K (9, 9). A law is one file:
+a NamedTuple of its parameters, and a function
 
-    Δr = δω · K_m Δm + δω · K_ω Δω       (f does not depend on the state).
+    law(coupling, m, n, B, gradients, forces, tangent) -> energy per unit reference volume
 
-A law is one file: a NamedTuple of its parameters and two functions compiled into the kernels.
+that adds to forces (9,) and tangent (9, 9), zero before; their rows M, OMEGA and X are those of m, ω and x.
+`gradients` (36,) holds ∂B_i/∂x_j (9) and ∂²B_i/∂x_j∂x_k (27); in a uniform field they vanish, and what a law has in
+the rows X is not used. A law without a potential returns 0.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Protocol, TypeVar
+from collections.abc import Callable, Sequence
+from typing import Any, Protocol, TypeVar
 
-from magshell.arrays import FloatArray
+import numba
+import numpy as np
+from numba.np.unsafe.ndarray import to_fixed_tuple
+
+from magshell.arrays import FloatArray, IntArray
+from magshell.compiled import Callback, Kernel, call, table
+
+M, OMEGA, X = 0, 3, 6
+WORK, GRADIENTS = 9, 36
 
 
 class Coupling(Protocol):
@@ -29,54 +40,91 @@ class Coupling(Protocol):
         """mu0, N/A²."""
 
 
-MagneticEnergy = Callable[..., float]
-ForcesAndTangent = Callable[..., None]
+CouplingLaw = Callable[..., float]
 AnyCoupling = TypeVar("AnyCoupling", bound=type)
 
-energies_of: dict[type, MagneticEnergy | None] = {}
-forces_of: dict[type, ForcesAndTangent] = {}
-
-
-def forces_and_tangent(
-    coupling: Coupling,
-    m: FloatArray,
-    n: FloatArray,
-    B: FloatArray,
-    f: FloatArray,
-    c: FloatArray,
-    K_m: FloatArray,
-    K_ω: FloatArray,
-) -> None:
-    """Fill f, c (3,) and K_m, K_ω (3, 3) at the state m, n (T, shape (3,)) in the field B (T, shape (3,))."""
-    forces_of[type(coupling)](coupling, m, n, B, f, c, K_m, K_ω)
-
-
-def magnetic_energy(coupling: Coupling, m: FloatArray, n: FloatArray, B: FloatArray) -> float:
-    """Energy per unit reference volume, J/m³; a law without one is not conservative."""
-    energy = energies_of[type(coupling)]
-    if energy is None:
-        raise ValueError(f"{type(coupling).__name__} is not conservative: it has no energy")
-    return energy(coupling, m, n, B)
-
-
-def is_conservative(coupling: Coupling) -> bool:
-    """Whether the law derives from an energy, so that the tangent is symmetric."""
-    return energies_of[type(coupling)] is not None
+callbacks: dict[type, Callback] = {}
+_conservative: set[type] = set()
 
 
 def laws() -> list[type]:
     """All registered laws: every test of the battery runs over this list."""
-    return list(forces_of)
+    return list(callbacks)
 
 
-def coupling_law(
-    forces: ForcesAndTangent, energy: MagneticEnergy | None = None
-) -> Callable[[AnyCoupling], AnyCoupling]:
-    """Register a NamedTuple class of parameters with its functions; a law without energy is not conservative."""
+def is_conservative(coupling: Coupling) -> bool:
+    """Whether the law derives from an energy, so that the tangent is symmetric."""
+    return type(coupling) in _conservative
+
+
+def coupling_law(law: CouplingLaw, has_energy: bool) -> Callable[[AnyCoupling], AnyCoupling]:
+    """Register a NamedTuple class of parameters with its function; a law without energy is not conservative."""
 
     def register(cls: AnyCoupling) -> AnyCoupling:
-        forces_of[cls] = forces
-        energies_of[cls] = energy
+        callbacks[cls] = Callback(_called(law, cls), "ppppppp", cls, (law, coupling_law))
+        if has_energy:
+            _conservative.add(cls)
         return cls
 
     return register
+
+
+def _called(law: CouplingLaw, cls: Any) -> Callable[..., float]:
+    """The function that kernels call: of pointers."""
+    count = len(cls._fields)
+    compiled: Any = numba.extending.register_jitable(law)
+
+    def called(parameters: Any, m: Any, n: Any, B: Any, gradients: Any, forces: Any, tangent: Any) -> Any:
+        coupling = cls(*to_fixed_tuple(numba.carray(parameters, (count,)), count))
+        m, n, B = numba.carray(m, (3,)), numba.carray(n, (3,)), numba.carray(B, (3,))
+        gradients, forces = numba.carray(gradients, (GRADIENTS,)), numba.carray(forces, (WORK,))
+        return compiled(coupling, m, n, B, gradients, forces, numba.carray(tangent, (WORK, WORK)))
+
+    return called
+
+
+@Kernel
+def _at_points(
+    address: int,
+    parameters: FloatArray,
+    m: FloatArray,
+    n: FloatArray,
+    B: FloatArray,
+    energy: FloatArray,
+    forces: FloatArray,
+    tangent: FloatArray,
+) -> None:
+    gradients = np.zeros(GRADIENTS)
+    for p in range(len(m)):
+        energy[p] = call(address, parameters, m[p], n[p], B, gradients, forces[p], tangent[p])
+
+
+def evaluate(
+    coupling: Coupling, m: FloatArray, n: FloatArray, B: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Energy, forces and tangent of a law in a uniform field.
+
+    Parameters
+    ----------
+    coupling : Coupling
+    m, n : ndarray, shape (..., 3)
+        T.
+    B : ndarray, shape (3,)
+        T.
+
+    Returns
+    -------
+    energy, forces, tangent : ndarray, shape (...,), (..., 9) and (..., 9, 9)
+        Rows M, OMEGA, X.
+    """
+    places, count = np.shape(m)[:-1], int(np.prod(np.shape(m)[:-1]))
+    energy, forces, tangent = np.zeros(count), np.zeros((count, WORK)), np.zeros((count, WORK, WORK))
+    m, n = (np.ascontiguousarray(one, dtype=float).reshape(-1, 3) for one in (m, n))
+    address, parameters = callbacks[type(coupling)].address, np.array(coupling, dtype=float)
+    _at_points(address, parameters, m, n, np.asarray(B, dtype=float), energy, forces, tangent)
+    return energy.reshape(places), forces.reshape(*places, WORK), tangent.reshape(*places, WORK, WORK)
+
+
+def addresses(couplings: Sequence[Coupling]) -> tuple[IntArray, FloatArray]:
+    """Addresses (n,) of some laws, and their parameters (n, most), padded with zeros."""
+    return table([callbacks[type(coupling)] for coupling in couplings], couplings)

@@ -16,36 +16,30 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.magnetics.law import coupling_law
+from magshell.magnetics.law import OMEGA, coupling_law
 
 
-def _energy(coupling: MicroRotationEnergy, m: FloatArray, n: FloatArray, B: FloatArray) -> float:
-    return -(n[0] * B[0] + n[1] * B[1] + n[2] * B[2]) / coupling.vacuum_permeability
-
-
-def _forces(
+def _law(
     coupling: MicroRotationEnergy,
     m: FloatArray,
     n: FloatArray,
     B: FloatArray,
-    f: FloatArray,
-    c: FloatArray,
-    K_m: FloatArray,
-    K_ω: FloatArray,
-) -> None:
+    gradients: FloatArray,
+    forces: FloatArray,
+    tangent: FloatArray,
+) -> float:
     mu0 = coupling.vacuum_permeability
     n_dot_B = n[0] * B[0] + n[1] * B[1] + n[2] * B[2]
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
-        f[i] = 0.0
-        c[i] = -(n[j] * B[k] - n[k] * B[j]) / mu0
+        forces[OMEGA + i] -= (n[j] * B[k] - n[k] * B[j]) / mu0
         for l in range(3):
-            K_m[i, l] = 0.0
-            K_ω[i, l] = -0.5 * (n[i] * B[l] + B[i] * n[l]) / mu0
-        K_ω[i, i] += n_dot_B / mu0
+            tangent[OMEGA + i, OMEGA + l] -= 0.5 * (n[i] * B[l] + B[i] * n[l]) / mu0
+        tangent[OMEGA + i, OMEGA + i] += n_dot_B / mu0
+    return -n_dot_B / mu0
 
 
-@coupling_law(forces=_forces, energy=_energy)
+@coupling_law(_law, has_energy=True)
 class MicroRotationEnergy(NamedTuple):
     """Energy -(1/mu0) (R̃ B̃) · B: the remanence turns with the micro-rotation and does not stretch."""
 

@@ -16,35 +16,31 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.magnetics.law import coupling_law
+from magshell.magnetics.law import OMEGA, M, coupling_law
 
 
-def _forces(
+def _law(
     coupling: MicropolarCouple,
     m: FloatArray,
     n: FloatArray,
     B: FloatArray,
-    f: FloatArray,
-    c: FloatArray,
-    K_m: FloatArray,
-    K_ω: FloatArray,
-) -> None:
+    gradients: FloatArray,
+    forces: FloatArray,
+    tangent: FloatArray,
+) -> float:
     mu0 = coupling.vacuum_permeability
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
-        f[i] = 0.0
-        c[i] = -(m[j] * B[k] - m[k] * B[j]) / mu0
-        K_m[i, i] = 0.0
-        K_m[k, j] = B[i] / mu0
-        K_m[j, k] = -B[i] / mu0
-    for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
-        K_ω[i, i] = 0.0
-        K_ω[k, j] = 0.5 * c[i]
-        K_ω[j, k] = -0.5 * c[i]
+        c = -(m[j] * B[k] - m[k] * B[j]) / mu0
+        forces[OMEGA + i] += c
+        tangent[OMEGA + k, M + j] += B[i] / mu0
+        tangent[OMEGA + j, M + k] -= B[i] / mu0
+        tangent[OMEGA + k, OMEGA + j] += 0.5 * c
+        tangent[OMEGA + j, OMEGA + k] -= 0.5 * c
+    return 0.0
 
 
-@coupling_law(forces=_forces)
+@coupling_law(_law, has_energy=False)
 class MicropolarCouple(NamedTuple):
     """Body couple (1/mu0) (F B̃) × B on the micro-rotation: the law of the micropolar theory."""
 

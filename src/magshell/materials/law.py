@@ -1,16 +1,28 @@
-"""What a material law is, and how the kernels find the one in use.
+"""What a material law is, and how the kernels reach the one in use.
 
 A law is a free energy Psi = W(U) + (gamma/2) tr(G Gᵀ) per unit reference volume, of the micropolar stretch
-U = R̃ᵀF and the wryness G. It is one file: a NamedTuple of its parameters and two functions of U that are
-compiled into the kernels. The couple-stress part is the same for all laws: gamma is the law's `couple_modulus`.
+U = R̃ᵀF and the wryness G. It is one file: a NamedTuple of its parameters, and a function of U,
+
+    law(material, U, P, C) -> W,      P = dW/dU (3, 3),      C = d²W/dUdU (3, 3, 3, 3),
+
+that fills P and C. The couple-stress part is the same for all laws: gamma is the law's `couple_modulus`.
+
+Kernels call it through a pointer, with the signature of laws that also have a memory and depend on the temperature:
+
+    law(parameters, U, memory, time_step, temperature, P, C, memory_after) -> W.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Protocol, TypeVar
+from collections.abc import Callable, Sequence
+from typing import Any, Protocol, TypeVar
 
-from magshell.arrays import FloatArray
+import numba
+import numpy as np
+from numba.np.unsafe.ndarray import to_fixed_tuple
+
+from magshell.arrays import FloatArray, IntArray
+from magshell.compiled import Callback, Kernel, call, table
 
 
 class Material(Protocol):
@@ -40,35 +52,79 @@ class Material(Protocol):
         """What is wrong with the parameters beyond their signs, a sentence each."""
 
 
-StrainEnergy = Callable[..., float]
-StressAndTangent = Callable[..., None]
+ElasticLaw = Callable[..., float]
 AnyMaterial = TypeVar("AnyMaterial", bound=type)
 
-strain_energies_of: dict[type, StrainEnergy] = {}
-stresses_of: dict[type, StressAndTangent] = {}
-
-
-def strain_energy(material: Material, U: FloatArray) -> float:
-    """W(U) in J/m³, U of shape (3, 3) with positive determinant."""
-    return strain_energies_of[type(material)](material, U)
-
-
-def stress_and_tangent(material: Material, U: FloatArray, P: FloatArray, C: FloatArray) -> None:
-    """Fill P = dW/dU, shape (3, 3), and C = d²W/dUdU, shape (3, 3, 3, 3), both in Pa."""
-    stresses_of[type(material)](material, U, P, C)
+callbacks: dict[type, Callback] = {}
 
 
 def laws() -> list[type]:
     """All registered laws: every test of the battery runs over this list."""
-    return list(stresses_of)
+    return list(callbacks)
 
 
-def material_law(energy: StrainEnergy, stress: StressAndTangent) -> Callable[[AnyMaterial], AnyMaterial]:
-    """Register a NamedTuple class of parameters with its functions of U."""
+def material_law(law: ElasticLaw) -> Callable[[AnyMaterial], AnyMaterial]:
+    """Register a NamedTuple class of parameters with its function `law(material, U, P, C) -> W`."""
 
     def register(cls: AnyMaterial) -> AnyMaterial:
-        strain_energies_of[cls] = energy
-        stresses_of[cls] = stress
+        callbacks[cls] = Callback(_elastic(law, cls), "pppddppp", cls, (law, material_law))
         return cls
 
     return register
+
+
+def _elastic(law: ElasticLaw, cls: Any) -> Callable[..., float]:
+    """The function that kernels call: of pointers, and without a memory."""
+    count = len(cls._fields)
+    compiled: Any = numba.extending.register_jitable(law)
+
+    def called(
+        parameters: Any,
+        U: Any,
+        memory: Any,
+        time_step: float,
+        temperature: float,
+        P: Any,
+        C: Any,
+        memory_after: Any,
+    ) -> Any:
+        material = cls(*to_fixed_tuple(numba.carray(parameters, (count,)), count))
+        U, P, C = numba.carray(U, (3, 3)), numba.carray(P, (3, 3)), numba.carray(C, (3, 3, 3, 3))
+        return compiled(material, U, P, C)
+
+    return called
+
+
+@Kernel
+def _at_points(
+    address: int, parameters: FloatArray, U: FloatArray, W: FloatArray, P: FloatArray, C: FloatArray
+) -> None:
+    memory = np.zeros(1)
+    for n in range(len(U)):
+        W[n] = call(address, parameters, U[n], memory, 0.0, 0.0, P[n], C[n], memory)
+
+
+def evaluate(material: Material, U: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Energy, stress and tangent of a law.
+
+    Parameters
+    ----------
+    material : Material
+    U : ndarray, shape (..., 3, 3)
+        With positive determinants.
+
+    Returns
+    -------
+    W, P, C : ndarray, shape (...,), (..., 3, 3) and (..., 3, 3, 3, 3)
+        J/m³ and Pa.
+    """
+    points = np.ascontiguousarray(U, dtype=float).reshape(-1, 3, 3)
+    count, places = len(points), np.shape(U)[:-2]
+    W, P, C = np.empty(count), np.empty((count, 3, 3)), np.empty((count, 3, 3, 3, 3))
+    _at_points(callbacks[type(material)].address, np.array(material, dtype=float), points, W, P, C)
+    return W.reshape(places), P.reshape(*places, 3, 3), C.reshape(*places, 3, 3, 3, 3)
+
+
+def addresses(materials: Sequence[Material]) -> tuple[IntArray, FloatArray]:
+    """Addresses (n,) of the laws of some materials, and their parameters (n, most), padded with zeros."""
+    return table([callbacks[type(material)] for material in materials], materials)

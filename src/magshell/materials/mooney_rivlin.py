@@ -26,28 +26,7 @@ from magshell.materials.law import material_law
 from magshell.materials.tensors import inverse_transpose
 
 
-def _energy(material: MicropolarMooneyRivlin, U: FloatArray) -> float:
-    mu2 = material.second_invariant_share * material.shear_modulus
-    mu1 = material.shear_modulus - mu2
-    J = inverse_transpose(U)[1]
-    I1, C_squared, U_squared = 0.0, 0.0, 0.0
-    for p in range(3):
-        for j in range(3):
-            C_pj = U[0, p] * U[0, j] + U[1, p] * U[1, j] + U[2, p] * U[2, j]
-            I1 += U[p, j] * U[p, j]
-            C_squared += C_pj * C_pj
-            U_squared += U[p, j] * U[j, p]
-    I2 = 0.5 * (I1**2 - C_squared)
-    return (
-        0.5 * mu1 * (I1 - 3.0)
-        + 0.5 * mu2 * (I2 - 3.0)
-        - (mu1 + 2.0 * mu2) * np.log(J)
-        + 0.25 * (material.lame_lambda - 2.0 * mu2) * (J**2 - 1.0 - 2.0 * np.log(J))
-        + 0.5 * material.coupling_modulus * (I1 - U_squared)
-    )
-
-
-def _stress_and_tangent(material: MicropolarMooneyRivlin, U: FloatArray, P: FloatArray, C: FloatArray) -> None:
+def _law(material: MicropolarMooneyRivlin, U: FloatArray, P: FloatArray, C: FloatArray) -> float:
     eta = material.coupling_modulus
     mu2 = material.second_invariant_share * material.shear_modulus
     mu1 = material.shear_modulus - mu2
@@ -57,8 +36,11 @@ def _stress_and_tangent(material: MicropolarMooneyRivlin, U: FloatArray, P: Floa
     I1 = right[0, 0] + right[1, 1] + right[2, 2]
     cubic = U @ right
     pressure = mu1 + 2.0 * mu2 - 0.5 * bulk * (J**2 - 1.0)
+    squares, skew = 0.0, 0.0
     for p in range(3):
         for j in range(3):
+            squares += right[p, j] * right[p, j]
+            skew += U[p, j] * (U[p, j] - U[j, p])
             P[p, j] = (mu1 + mu2 * I1) * U[p, j] - mu2 * cubic[p, j] - pressure * V[p, j] + eta * (U[p, j] - U[j, p])
             for q in range(3):
                 for l in range(3):
@@ -74,9 +56,12 @@ def _stress_and_tangent(material: MicropolarMooneyRivlin, U: FloatArray, P: Floa
             for k in range(3):
                 C[p, j, p, k] -= mu2 * right[k, j]
                 C[p, j, k, j] -= mu2 * left[p, k]
+    I2 = 0.5 * (I1**2 - squares)
+    distortion = 0.5 * mu1 * (I1 - 3.0) + 0.5 * mu2 * (I2 - 3.0) - (mu1 + 2.0 * mu2) * np.log(J)
+    return distortion + 0.25 * bulk * (J**2 - 1.0 - 2.0 * np.log(J)) + 0.5 * eta * skew
 
 
-@material_law(energy=_energy, stress=_stress_and_tangent)
+@material_law(_law)
 class MicropolarMooneyRivlin(NamedTuple):
     """Micropolar Mooney–Rivlin material.
 

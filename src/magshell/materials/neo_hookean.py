@@ -27,25 +27,16 @@ from magshell.materials.law import Material, material_law
 from magshell.materials.tensors import inverse_transpose
 
 
-def _energy(material: Material, U: FloatArray) -> float:
-    mu, eta = material.shear_modulus, material.coupling_modulus
-    log_J = np.log(inverse_transpose(U)[1])
+def _law(material: Material, U: FloatArray, P: FloatArray, C: FloatArray) -> float:
+    mu, eta, lam = material.shear_modulus, material.coupling_modulus, material.lame_lambda
+    V, J = inverse_transpose(U)
+    log_J = np.log(J)
+    pressure = mu - lam * log_J
     square, product = 0.0, 0.0
     for p in range(3):
         for j in range(3):
             square += U[p, j] * U[p, j]
             product += U[p, j] * U[j, p]
-    return (
-        0.5 * (mu + eta) * square - 0.5 * eta * product + 0.5 * material.lame_lambda * log_J**2 - mu * log_J - 1.5 * mu
-    )
-
-
-def _stress_and_tangent(material: Material, U: FloatArray, P: FloatArray, C: FloatArray) -> None:
-    mu, eta, lam = material.shear_modulus, material.coupling_modulus, material.lame_lambda
-    V, J = inverse_transpose(U)
-    pressure = mu - lam * np.log(J)
-    for p in range(3):
-        for j in range(3):
             P[p, j] = (mu + eta) * U[p, j] - eta * U[j, p] - pressure * V[p, j]
             for q in range(3):
                 for l in range(3):
@@ -54,9 +45,10 @@ def _stress_and_tangent(material: Material, U: FloatArray, P: FloatArray, C: Flo
         for j in range(3):
             C[p, j, p, j] += mu + eta
             C[p, j, j, p] -= eta
+    return 0.5 * (mu + eta) * square - 0.5 * eta * product + 0.5 * lam * log_J**2 - mu * log_J - 1.5 * mu
 
 
-@material_law(energy=_energy, stress=_stress_and_tangent)
+@material_law(_law)
 class MicropolarNeoHookean(NamedTuple):
     """Micropolar neo-Hookean material.
 

@@ -24,46 +24,37 @@ from magshell.arrays import FloatArray
 from magshell.materials.law import Material, material_law
 
 
-def _energy(material: Material, U: FloatArray) -> float:
-    trace, square, skew = 0.0, 0.0, 0.0
-    for j in range(3):
-        for l in range(3):
-            strain = -0.5 if j == l else 0.0
-            for p in range(3):
-                strain = strain + 0.5 * U[p, j] * U[p, l]
-            square = square + strain**2
-            if j == l:
-                trace = trace + strain
-            skew = skew + U[j, l] ** 2 - U[j, l] * U[l, j]
-    relative = 0.5 * material.coupling_modulus * skew
-    return 0.5 * material.lame_lambda * trace**2 + material.shear_modulus * square + relative
-
-
-def _stress_and_tangent(material: Material, U: FloatArray, P: FloatArray, C: FloatArray) -> None:
+def _law(material: Material, U: FloatArray, P: FloatArray, C: FloatArray) -> float:
     mu, eta, lam = material.shear_modulus, material.coupling_modulus, material.lame_lambda
-    trace = -1.5
+    trace, square, skew = -1.5, 0.0, 0.0
     for p in range(3):
         for j in range(3):
             trace += 0.5 * U[p, j] * U[p, j]
+            skew += U[p, j] * (U[p, j] - U[j, p])
             P[p, j] = eta * (U[p, j] - U[j, p])
             for q in range(3):
                 for l in range(3):
                     C[p, j, q, l] = lam * U[p, j] * U[q, l] + mu * U[p, l] * U[q, j]
     for j in range(3):
         for l in range(3):
-            S = mu * (U[0, j] * U[0, l] + U[1, j] * U[1, l] + U[2, j] * U[2, l])
+            strain = 0.5 * (U[0, j] * U[0, l] + U[1, j] * U[1, l] + U[2, j] * U[2, l])
             left = mu * (U[j, 0] * U[l, 0] + U[j, 1] * U[l, 1] + U[j, 2] * U[l, 2])
             if j == l:
-                S += lam * trace - mu
+                strain -= 0.5
+            S = 2.0 * mu * strain
+            if j == l:
+                S += lam * trace
+            square += strain**2
             for p in range(3):
                 P[p, j] += U[p, l] * S
                 C[p, j, p, l] += S
                 C[j, p, l, p] += left
             C[j, l, j, l] += eta
             C[j, l, l, j] -= eta
+    return 0.5 * lam * trace**2 + mu * square + 0.5 * eta * skew
 
 
-@material_law(energy=_energy, stress=_stress_and_tangent)
+@material_law(_law)
 class MicropolarStVenantKirchhoff(NamedTuple):
     """Micropolar St Venant–Kirchhoff material.
 

@@ -5,17 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from magshell.arrays import FloatArray
+from magshell.compiled import also_compiled
 
 
-def inverse_transpose(U: FloatArray) -> tuple[FloatArray, float]:
-    """U⁻ᵀ and det U of a 3 × 3 array, from its cofactors (further axes broadcast outside kernels)."""
-    V = np.empty_like(U)
-    J = fill_inverse_transpose(U, V)
-    return V, J
-
-
+@also_compiled
 def fill_inverse_transpose(U: FloatArray, V: FloatArray) -> float:
-    """Fill V with U⁻ᵀ likewise; return det U."""
+    """Fill V with U⁻ᵀ of a 3 × 3 array, from its cofactors; return det U."""
     for i in range(3):
         a, b = (i + 1) % 3, (i + 2) % 3
         for j in range(3):
@@ -26,3 +21,11 @@ def fill_inverse_transpose(U: FloatArray, V: FloatArray) -> float:
         for j in range(3):
             V[i, j] /= J
     return J
+
+
+@also_compiled
+def inverse_transpose(U: FloatArray) -> tuple[FloatArray, float]:
+    """U⁻ᵀ and det U of a 3 × 3 array."""
+    V = np.empty_like(U)
+    J = fill_inverse_transpose(U, V)
+    return V, J

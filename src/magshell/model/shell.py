@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import dataclasses
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from magshell.arrays import AnyArray, FloatArray
+from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.errors import InputError, suggest
 from magshell.magnetics.remanence import Remanence, constant
 from magshell.mesh import Mesh
@@ -16,6 +16,22 @@ from magshell.shell.elements import ELEMENTS, QUADRATIC
 
 STRETCHES = ("linear", "none", "plane-stress")
 NO_REMANENCE = constant((0.0, 0.0, 0.0))
+
+
+class Region(NamedTuple):
+    """Elements of one make.
+
+    Attributes
+    ----------
+    elements : ndarray, shape (n,)
+    thickness : float
+        m.
+    material : Material
+    """
+
+    elements: IntArray
+    thickness: float
+    material: Any
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -101,6 +117,11 @@ class Shell:
 
     def __repr__(self) -> str:
         return f"Shell({self.mesh!r}, thickness {self.thickness:g} m, {self.material!r}, element '{self.element.name}')"
+
+    @property
+    def regions(self) -> tuple[Region, ...]:
+        """The shell by regions: together they hold every element once."""
+        return (Region(np.arange(len(self.mesh.elements)), self.thickness, self.material),)
 
     @cached_property
     def remanence_at_points(self) -> FloatArray:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray, IntArray
+from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import find
 from magshell.output.scene import (
     MARGIN,
@@ -95,8 +96,8 @@ class Solid(NamedTuple):
 
 def faces(path: Path, step: Step, heights: Sequence[float] = (-0.5, 0.5)) -> list[FloatArray]:
     """Deformed positions (nodes, 3) at fractions of the thickness over the mid-surface: x = X + u + z (1 + z φ) d."""
-    d, state, thickness = path.discretisation, step.state, path.model.shell.thickness
-    middle, director, phi = d.mesh.points + state.u, d.nodal_director(state), d.nodal_phi(state)[:, None]
+    reached, thickness = converged(path.discretisation, step), path.model.shell.thickness
+    middle, director, phi = reached.mesh.points + step.state.u, reached.director(), reached.phi()[:, None]
     return [middle + z * (1.0 + z * phi) * director for z in (fraction * thickness for fraction in heights)]
 
 
@@ -117,11 +118,11 @@ def step_at(path: Path, flux_density: float) -> Step:
 
 def solid(body: Body) -> Solid:
     """Upper and lower faces and the walls between them, m."""
-    path, state, d = body.path, body.step.state, body.path.discretisation
+    path, d = body.path, body.path.discretisation
     cells = Tessellation(d.mesh.elements, PIECES)
     sides = faces(path, body.step)
     output, component = find(body.output)
-    nodal = np.asarray(output.evaluate(d, state), dtype=float)
+    nodal = np.asarray(output.evaluate(converged(d, body.step)), dtype=float)
     if nodal.ndim == 2:
         nodal = nodal[:, component - 1] if component else np.linalg.norm(nodal, axis=1)
 

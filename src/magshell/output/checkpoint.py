@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 import magshell
+from magshell.equations.instant import Increment
 from magshell.errors import InputError
 from magshell.evaluation.balance import Balance
 from magshell.files import naming, write_atomically
@@ -35,7 +36,7 @@ from magshell.solver.waypoint import Waypoint
 from magshell.units import shortened
 
 if TYPE_CHECKING:
-    from magshell.equations.assembly import Discretisation
+    from magshell.equations.discretisation import Discretisation
     from magshell.solver.settings import Settings
 
 FORMAT, VERSION = "magshell checkpoint", 1
@@ -182,8 +183,8 @@ def content(waypoint: Waypoint, origin: Origin) -> bytes:
         "loads": step.loads,
         "negative_pivots": _counted(step.negative_pivots),
         **step.state._asdict(),
-        "slope_increment": slope.increment,
-        "slope_alpha": slope.d_alpha,
+        "slope_increment": slope.increment.nodal,
+        "slope_alpha": slope.increment.alpha,
         "slope_load": slope.load,
         "goal": waypoint.goal,
         "taken": waypoint.taken,
@@ -234,7 +235,7 @@ def _waypoint(arrays: Mapping[str, np.ndarray]) -> Waypoint:
         float(arrays["residual"]), _balance(arrays), float(arrays["arc_length"]), int(arrays["stage"]),
         arrays["flux_density"], arrays["loads"], _known(arrays["negative_pivots"]),
     )  # fmt: skip
-    slope = Slope(arrays["slope_increment"], arrays["slope_alpha"], float(arrays["slope_load"]))
+    slope = Slope(Increment(arrays["slope_increment"], arrays["slope_alpha"]), float(arrays["slope_load"]))
     critical = tuple(_critical(arrays, f"critical{number + 1}_") for number in range(int(arrays["critical_points"])))
     return Waypoint(
         step, critical, slope, int(arrays["goal"]), int(arrays["taken"]), bool(arrays["by_arc"]),

@@ -14,7 +14,7 @@ from magshell.shell.unknowns import COLUMNS
 from magshell.solver.events import Observer
 
 if TYPE_CHECKING:
-    from magshell.equations.assembly import Discretisation
+    from magshell.equations.discretisation import Discretisation
     from magshell.solver.buckling import BucklingMode
     from magshell.solver.critical import CriticalPoint
     from magshell.solver.settings import Settings

@@ -192,7 +192,7 @@ def second_axis(axes: Axes, factor: float, label: str) -> None:
 
 def load_per_mT(path: Path) -> float:
     """The nondimensional load of one millitesla: 10³ · 10⁻³ T · |Brem| / (mu mu0)."""
-    remanence = np.linalg.norm(path.discretisation.body.remanence, axis=-1).max()
+    remanence = np.linalg.norm(path.discretisation.reference.remanence, axis=-1).max()
     return float(remanence / (path.model.shell.material.shear_modulus * path.model.coupling.vacuum_permeability))
 
 

@@ -10,7 +10,7 @@ from magshell.files import append_line, csv_line, write_atomically
 from magshell.solver.events import Observer
 
 if TYPE_CHECKING:
-    from magshell.equations.assembly import Discretisation
+    from magshell.equations.discretisation import Discretisation
     from magshell.solver.path import Path, Step
     from magshell.solver.settings import Settings
 

@@ -59,8 +59,8 @@ def _faults(waypoint: Waypoint, before: Waypoint | None, model: Model) -> Iterat
         yield "a count, radius, residual or time is negative or too large"
     yield from _faults_of_state(step.state, model, "")
     slope = waypoint.slope
-    yield from _of_shape("slope_increment", slope.increment, (len(model.shell.mesh.points), 10))
-    yield from _of_shape("slope_alpha", slope.d_alpha, step.state.alpha.shape)
+    yield from _of_shape("slope_increment", slope.increment.nodal, (len(model.shell.mesh.points), 10))
+    yield from _of_shape("slope_alpha", slope.increment.alpha, step.state.alpha.shape)
     if step.balance is not None:
         for name, values in step.balance._asdict().items():
             yield from _of_shape(f"balance_{name}", values, () if name.endswith(("_imbalance", "_scale")) else (3,))

@@ -15,7 +15,7 @@ from magshell.files import naming, write_atomically
 from magshell.solver.events import Observer
 
 if TYPE_CHECKING:
-    from magshell.equations.assembly import Discretisation
+    from magshell.equations.discretisation import Discretisation
     from magshell.solver.path import Path
     from magshell.solver.settings import Settings
 

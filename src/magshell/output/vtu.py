@@ -12,13 +12,14 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import OUTPUTS
 from magshell.files import naming, refuse_somebodys, with_suffix, write_atomically
 from magshell.shell.triangle import REPEATED, SLOTS
 from magshell.solver.events import Observer
 
 if TYPE_CHECKING:
-    from magshell.equations.assembly import Discretisation
+    from magshell.equations.discretisation import Discretisation
     from magshell.solver.buckling import BucklingMode
     from magshell.solver.critical import CriticalPoint
     from magshell.solver.path import Path, Step
@@ -154,9 +155,10 @@ def grid(discretisation: Discretisation, step: Step | CriticalPoint | BucklingMo
     kept[np.ix_(mesh.triangles, 1 + REPEATED)] = False
     types = np.where(mesh.triangles, VTK_QUADRATIC_TRIANGLE, VTK_QUADRATIC_QUAD).astype(np.uint8)
     result = pyvista.UnstructuredGrid(cells[kept], types, np.array(mesh.points))
+    reached = converged(discretisation, step)
     for output in OUTPUTS.values():
         data = result.point_data if output.where == "point" else result.cell_data
-        data.set_array(np.array(output.evaluate(discretisation, step.state)), output.name)
+        data.set_array(np.array(output.evaluate(reached)), output.name)
     flux_density = step.flux_density
     result.field_data.update(
         {

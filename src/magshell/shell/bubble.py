@@ -57,14 +57,14 @@ class Hold(NamedTuple):
     s: FloatArray
 
 
-def hold(node_coordinates: FloatArray, element: ElementType, thickness: float, shear_modulus: float) -> Hold:
-    """The hold of elements with these nodes (elements, 8, 3)."""
+def hold(node_coordinates: FloatArray, element: ElementType, thickness: FloatArray, shear_modulus: FloatArray) -> Hold:
+    """The hold of elements with these nodes (elements, 8, 3), thickness and shear modulus (elements,)."""
     du = serendipity(np.zeros((1, 2)))[1][0]
     A = np.einsum("an,enx->eax", du, node_coordinates)
     metric = np.einsum("eax,ebx->eab", A, A)
     area = 4.0 * np.sqrt(np.linalg.det(metric))
-    plane = shear_modulus * thickness * area[:, None, None] * np.linalg.inv(metric)
-    bending = np.full(len(area), element.bubble * shear_modulus * thickness**3)
+    plane = (shear_modulus * thickness * area)[:, None, None] * np.linalg.inv(metric)
+    bending = element.bubble * shear_modulus * thickness**3
     k, s = [plane], [bending]
     if element.triangle_rule is not None:
         k.append(plane)
@@ -78,16 +78,6 @@ def hold(node_coordinates: FloatArray, element: ElementType, thickness: float, s
     )
 
 
-def held_energy(held: Hold, u: FloatArray, alpha: FloatArray) -> FloatArray:
-    """W of each element (elements,), J, from u (elements, 8, 3) and α (elements, modes, 3)."""
-    energy = np.zeros(len(u))
-    for number, (k, s) in enumerate(zip(held.k, held.s, strict=True)):
-        vector = alpha[:, -1 - number]
-        c = np.einsum("eax,ex->ea", held.A + np.einsum("an,enx->eax", held.du, u), vector)
-        energy += 0.5 * np.einsum("eab,ea,eb->e", k, c, c) + 0.5 * s * np.sum(vector**2, axis=1)
-    return energy
-
-
 @inline
 def hold_vector(
     held: Hold,
@@ -99,9 +89,12 @@ def hold_vector(
     vectors: FloatArray,
     r: FloatArray,
     K: FloatArray,
-) -> None:
-    """Add the gradient of W to r and its Hessian to K, for the element's values v and its held vector α (3,)."""
-    a, c, T = vectors[:2], vectors[2], vectors[3]
+) -> float:
+    """Add the gradient of W to r[:, 0] and its Hessian to K, for the element's values v and its held vector α (3,).
+
+    Returns W.
+    """
+    a, c, T, energy = vectors[:2], vectors[2], vectors[3], 0.0
     for b in range(2):
         c[b] = 0.0
         for i in range(3):
@@ -112,14 +105,16 @@ def hold_vector(
             c[b] += s * alpha[i]
     for b in range(2):
         T[b] = held.k[number, e, b, 0] * c[0] + held.k[number, e, b, 1] * c[1]
+        energy += 0.5 * T[b] * c[b]
     last = place(10, 0, layout) + layout.modes - 1 - number
     for i in range(3):
         row, at = last + i * layout.modes, place(i, 0, layout)
-        r[row] += T[0] * a[0, i] + T[1] * a[1, i] + held.s[number, e] * alpha[i]
+        energy += 0.5 * held.s[number, e] * alpha[i] ** 2
+        r[row, 0] += T[0] * a[0, i] + T[1] * a[1, i] + held.s[number, e] * alpha[i]
         K[row, row] += held.s[number, e]
         for n in range(layout.u):
             d = T[0] * held.du[0, n] + T[1] * held.du[1, n]
-            r[at + n] += d * alpha[i]
+            r[at + n, 0] += d * alpha[i]
             K[row, at + n] += d
             K[at + n, row] += d
         for j in range(3):
@@ -138,3 +133,4 @@ def hold_vector(
                 k1 = held.du[0, n] * held.k[number, e, 0, 1] + held.du[1, n] * held.k[number, e, 1, 1]
                 for m in range(layout.u):
                     K[at + n, at_j + m] += product * (k0 * held.du[0, m] + k1 * held.du[1, m])
+    return energy

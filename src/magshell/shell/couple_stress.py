@@ -1,4 +1,4 @@
-r"""The couple stress at a point: ½ c^αβ κ_α · κ_β with c^αβ = gamma Σ_k volume G^α · G^β.
+r"""The couple stress at a point: ½ c^αβ κ_α · κ_β with c^αβ = Σ_k gamma volume G^α · G^β.
 
 With δκ = L δq̂,α + M δq̂ (rotation.py), m^α = c^αβ κ_β and n² = |q̂|²:
 
@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from magshell.arrays import FloatArray
 from magshell.compiled import inline
-from magshell.shell.point import Q1, Q, Workspace
+from magshell.shell.point import INTERNAL, MIXED, Q1, Q, Record
 from magshell.shell.rotation import LAST, NEXT, wryness_maps
 
 
@@ -24,39 +24,30 @@ def _add_pair(H: FloatArray, i: int, j: int, value: float) -> None:
 
 @inline
 def couple_stress(
-    w: Workspace,
-    modulus: float,
-    metric: FloatArray,
-    x: FloatArray,
-    n2: float,
-    kappa_mixed: FloatArray,
-    mixed: bool,
-    tangent: bool,
-    g: FloatArray,
-    g_mixed: FloatArray,
-    H: FloatArray,
-) -> None:
-    """Add ½ c^αβ κ_α · κ_β: gradient and Hessian with respect to (q̂, q̂,1, q̂,2)."""
-    q = x[Q : Q + 4]
+    w: Record, metric: FloatArray, n2: float, kappa_mixed: FloatArray, mixed: bool, tangent: bool
+) -> float:
+    """Add ½ c^αβ κ_α · κ_β: gradient and Hessian with respect to (q̂, q̂,1, q̂,2); returns the energy."""
+    q, H, energy = w.x[Q : Q + 4], w.H, 0.0
     for a in range(2):
-        wryness_maps(q, x[Q1 + 4 * a : Q1 + 4 * a + 4], n2, w.L, w.M[a], w.kappa[a])
+        wryness_maps(q, w.x[Q1 + 4 * a : Q1 + 4 * a + 4], n2, w.L, w.M[a], w.kappa[a])
     for a in range(2):
         for i in range(3):
-            w.stress[a, i] = modulus * (metric[a, 0] * w.kappa[0, i] + metric[a, 1] * w.kappa[1, i])
-    _add_gradient(w, g)
+            w.stress[a, i] = metric[a, 0] * w.kappa[0, i] + metric[a, 1] * w.kappa[1, i]
+            energy += 0.5 * w.stress[a, i] * w.kappa[a, i]
+    _add_gradient(w, INTERNAL)
     if not tangent:
-        return
+        return energy
     if mixed:
         for a in range(2):
             for i in range(3):
-                w.stress[a, i] = modulus * (metric[a, 0] * kappa_mixed[0, i] + metric[a, 1] * kappa_mixed[1, i])
-    _add_gradient(w, g_mixed)
+                w.stress[a, i] = metric[a, 0] * kappa_mixed[0, i] + metric[a, 1] * kappa_mixed[1, i]
+    _add_gradient(w, MIXED)
     L, M, M_c, two = w.L, w.M, w.M_c, 2.0 / n2
     for b in range(2):
         for i in range(3):
             for r in range(4):
-                M_c[b, i, r] = modulus * (metric[0, b] * M[0, i, r] + metric[1, b] * M[1, i, r])
-    c_11, c_12, c_22 = modulus * metric[0, 0], modulus * metric[0, 1], modulus * metric[1, 1]
+                M_c[b, i, r] = metric[0, b] * M[0, i, r] + metric[1, b] * M[1, i, r]
+    c_11, c_12, c_22 = metric[0, 0], metric[0, 1], metric[1, 1]
     for r in range(4):
         for c in range(4):
             H[Q + r, Q + c] -= two * (q[r] * w.m_M[c] + w.m_M[r] * q[c])
@@ -81,16 +72,17 @@ def couple_stress(
             _add_pair(H, Q + 1 + i, at, -two * m[i])
             _add_pair(H, Q + 1 + k, at + 1 + j, two * m[i])
             _add_pair(H, Q + 1 + j, at + 1 + k, -two * m[i])
+    return energy
 
 
 @inline
-def _add_gradient(w: Workspace, g: FloatArray) -> None:
-    """Fill m_M = Σ M_αᵀ m^α and m_L = Lᵀ m^α of the couple stresses in w.stress, and add them to g."""
+def _add_gradient(w: Record, column: int) -> None:
+    """Fill m_M = Σ M_αᵀ m^α and m_L = Lᵀ m^α of the couple stresses in w.stress, and add them to a column of g."""
     m = w.stress
     for c in range(4):
         w.m_M[c] = 0.0
         for a in range(2):
             w.m_M[c] += w.M[a, 0, c] * m[a, 0] + w.M[a, 1, c] * m[a, 1] + w.M[a, 2, c] * m[a, 2]
             w.m_L[a, c] = w.L[0, c] * m[a, 0] + w.L[1, c] * m[a, 1] + w.L[2, c] * m[a, 2]
-            g[Q1 + 4 * a + c] += w.m_L[a, c]
-        g[Q + c] += w.m_M[c]
+            w.g[Q1 + 4 * a + c, column] += w.m_L[a, c]
+        w.g[Q + c, column] += w.m_M[c]

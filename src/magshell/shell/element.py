@@ -23,8 +23,8 @@ from typing import NamedTuple
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.compiled import inline
-from magshell.shell.geometry import Interpolation
-from magshell.shell.point import ENHANCED, PHI, Q1, U1, W1, Q, W
+from magshell.shell.point import ENHANCED, MIXED, PHI, Q1, U1, W1, Q, Record, W
+from magshell.shell.state import State
 
 
 class Layout(NamedTuple):
@@ -58,15 +58,13 @@ def carriers(component: int, layout: Layout) -> int:
 @inline
 def gather(
     nodes: IntArray,
-    u: FloatArray,
-    w: FloatArray,
-    phi: FloatArray,
-    q: FloatArray,
+    state: State,
     alpha: FloatArray,
     layout: Layout,
     v: FloatArray,
 ) -> None:
     """Fill v with the element's values; quaternions are aligned to the first node's hemisphere."""
+    u, w, phi, q = state.u, state.w, state.phi, state.q
     first = q[nodes[0]]
     for i in range(3):
         at_u, at_w = place(i, 0, layout), place(3 + i, 0, layout)
@@ -91,39 +89,39 @@ def gather(
 
 
 @inline
-def point_values(shape: Interpolation, e: int, p: int, layout: Layout, v: FloatArray, x: FloatArray) -> None:
-    """x = G v at point p of element e; without micro-rotation q̂ is the identity."""
+def point_values(point: Record, enhancement: FloatArray, layout: Layout, v: FloatArray, x: FloatArray) -> None:
+    """x = G v at a point; without micro-rotation q̂ is the identity."""
     for i in range(3):
         at_u, at_w = place(i, 0, layout), place(3 + i, 0, layout)
         at_α = place(7, 0, layout) + 4 * layout.q + i * layout.modes
         s1, s2 = 0.0, 0.0
         for n in range(layout.u):
-            s1 += shape.u[e, p, 0, n] * v[at_u + n]
-            s2 += shape.u[e, p, 1, n] * v[at_u + n]
+            s1 += point.u[0, n] * v[at_u + n]
+            s2 += point.u[1, n] * v[at_u + n]
         e1, e2, e3 = 0.0, 0.0, 0.0
         for m in range(layout.modes):
-            e1 += shape.enhancement[e, p, 0, m] * v[at_α + m]
-            e2 += shape.enhancement[e, p, 1, m] * v[at_α + m]
-            e3 += shape.enhancement[e, p, 2, m] * v[at_α + m]
+            e1 += enhancement[0, m] * v[at_α + m]
+            e2 += enhancement[1, m] * v[at_α + m]
+            e3 += enhancement[2, m] * v[at_α + m]
         x[U1 + i], x[U1 + 3 + i], x[ENHANCED + i] = s1 + e1, s2 + e2, e3
         s0, s1, s2 = 0.0, 0.0, 0.0
         for n in range(layout.w):
-            s0 += shape.director[e, p, 0, n] * v[at_w + n]
-            s1 += shape.director[e, p, 1, n] * v[at_w + n]
-            s2 += shape.director[e, p, 2, n] * v[at_w + n]
+            s0 += point.director[0, n] * v[at_w + n]
+            s1 += point.director[1, n] * v[at_w + n]
+            s2 += point.director[2, n] * v[at_w + n]
         x[W + i], x[W1 + i], x[W1 + 3 + i] = s0, s1, s2
     at = place(6, 0, layout)
     s0 = 0.0
     for n in range(layout.phi):
-        s0 += shape.phi[e, p, n] * v[at + n]
+        s0 += point.phi[n] * v[at + n]
     x[PHI] = s0
     for c in range(4):
         at = place(7 + c, 0, layout)
         s0, s1, s2 = 0.0, 0.0, 0.0
         for n in range(layout.q):
-            s0 += shape.rotation[e, p, 0, n] * v[at + n]
-            s1 += shape.rotation[e, p, 1, n] * v[at + n]
-            s2 += shape.rotation[e, p, 2, n] * v[at + n]
+            s0 += point.rotation[0, n] * v[at + n]
+            s1 += point.rotation[1, n] * v[at + n]
+            s2 += point.rotation[2, n] * v[at + n]
         x[Q + c], x[Q1 + c], x[Q1 + 4 + c] = s0, s1, s2
     if layout.q == 0:
         x[Q] = 1.0
@@ -143,45 +141,44 @@ def spin_derivatives(v: FloatArray, layout: Layout, T: FloatArray) -> None:
 
 @inline
 def contract(
-    shape: Interpolation,
-    e: int,
-    p: int,
+    point: Record,
+    enhancement: FloatArray,
     layout: Layout,
     T: FloatArray,
     H: FloatArray,
     scratch: FloatArray,
     out: FloatArray,
 ) -> None:
-    """out += T̂ᵀGᵀ H at point p of element e: the point's rows (31) become the element's, whatever the columns."""
-    width = H.shape[1]
+    """out += T̂ᵀGᵀ H: the point's rows (31) become the element's, for as many columns as `out` has."""
+    width = out.shape[1]
     for i in range(3):
         h1, h2, h3 = H[U1 + i], H[U1 + 3 + i], H[ENHANCED + i]
         at = place(i, 0, layout)
         for n in range(layout.u):
-            row, a1, a2 = out[at + n], shape.u[e, p, 0, n], shape.u[e, p, 1, n]
+            row, a1, a2 = out[at + n], point.u[0, n], point.u[1, n]
             for j in range(width):
                 row[j] += a1 * h1[j] + a2 * h2[j]
         at = place(10, 0, layout) + i * layout.modes
         for m in range(layout.modes):
             row = out[at + m]
-            a1, a2, a = shape.enhancement[e, p, 0, m], shape.enhancement[e, p, 1, m], shape.enhancement[e, p, 2, m]
+            a1, a2, a = enhancement[0, m], enhancement[1, m], enhancement[2, m]
             for j in range(width):
                 row[j] += a1 * h1[j] + a2 * h2[j] + a * h3[j]
         h, h1, h2 = H[W + i], H[W1 + i], H[W1 + 3 + i]
         at = place(3 + i, 0, layout)
         for n in range(layout.w):
             row = out[at + n]
-            a, a1, a2 = shape.director[e, p, 0, n], shape.director[e, p, 1, n], shape.director[e, p, 2, n]
+            a, a1, a2 = point.director[0, n], point.director[1, n], point.director[2, n]
             for j in range(width):
                 row[j] += a * h[j] + a1 * h1[j] + a2 * h2[j]
     h, at = H[PHI], place(6, 0, layout)
     for n in range(layout.phi):
-        row, a = out[at + n], shape.phi[e, p, n]
+        row, a = out[at + n], point.phi[n]
         for j in range(width):
             row[j] += a * h[j]
     at = place(7, 0, layout)
     for n in range(layout.q):
-        a, a1, a2 = shape.rotation[e, p, 0, n], shape.rotation[e, p, 1, n], shape.rotation[e, p, 2, n]
+        a, a1, a2 = point.rotation[0, n], point.rotation[1, n], point.rotation[2, n]
         for c in range(4):
             row, h, h1, h2 = scratch[c], H[Q + c], H[Q1 + c], H[Q1 + 4 + c]
             for j in range(width):
@@ -194,15 +191,13 @@ def contract(
 
 
 @inline
-def add_radial_force(
-    shape: Interpolation, e: int, p: int, layout: Layout, g: FloatArray, v: FloatArray, radial: FloatArray
-) -> None:
-    """radial (nodes,) += q · r_q of each node, from the gradient g at point p."""
+def add_radial_force(point: Record, layout: Layout, g: FloatArray, v: FloatArray, radial: FloatArray) -> None:
+    """radial (nodes,) += q · r_q of each node, from the gradient that the geometric part is made with."""
     for c in range(4):
         at = place(7 + c, 0, layout)
         for n in range(layout.q):
-            r = shape.rotation[e, p, 0, n] * g[Q + c]
-            r += shape.rotation[e, p, 1, n] * g[Q1 + c] + shape.rotation[e, p, 2, n] * g[Q1 + 4 + c]
+            r = point.rotation[0, n] * g[Q + c, MIXED]
+            r += point.rotation[1, n] * g[Q1 + c, MIXED] + point.rotation[2, n] * g[Q1 + 4 + c, MIXED]
             radial[n] += v[at + n] * r
 
 

@@ -11,6 +11,13 @@ from magshell.shell import triangle
 from magshell.shell.elements import ElementType
 
 
+class Sections(NamedTuple):
+    """Through the thickness of each element: levels z (elements, k) and the height of each, both m."""
+
+    z: FloatArray
+    heights: FloatArray
+
+
 class SectionGeometry(NamedTuple):
     """What the point's section needs of the undeformed shell; p counts points, k levels through the thickness.
 
@@ -20,14 +27,12 @@ class SectionGeometry(NamedTuple):
         Covariant base A_α = X,α of the mid-surface, m.
     D, dD : ndarray, shape (elements, p, 3) and (elements, p, 2, 3)
         Unit director of the undeformed shell and its derivatives D,α.
-    z : ndarray, shape (k,)
+    z : ndarray, shape (elements, p, k)
         Levels, m.
     G : ndarray, shape (elements, p, k, 3, 3)
         Dual of (A_1 + z D,1, A_2 + z D,2, D): G^i = Q⁻¹ A^i with the shifter Q = I - z B; rows, 1/m.
     volume : ndarray, shape (elements, p, k)
         det Q √A times all weights, m³.
-    metric : ndarray, shape (elements, p, 2, 2)
-        Σ_k volume G^α · G^β, m: all that the couple stress needs of the thickness.
     """
 
     A: FloatArray
@@ -36,7 +41,6 @@ class SectionGeometry(NamedTuple):
     z: FloatArray
     G: FloatArray
     volume: FloatArray
-    metric: FloatArray
 
 
 class Interpolation(NamedTuple):
@@ -168,14 +172,9 @@ def _area(derivatives: FloatArray, node_coordinates: FloatArray) -> FloatArray:
 
 
 def section_geometry(
-    node_coordinates: FloatArray,
-    normals: FloatArray,
-    shape: Interpolation,
-    weights: FloatArray,
-    thickness: float,
-    levels: int,
+    node_coordinates: FloatArray, normals: FloatArray, shape: Interpolation, weights: FloatArray, sections: Sections
 ) -> SectionGeometry:
-    """Geometry at the points of a surface rule, with a Gauss rule of `levels` points through the thickness.
+    """Geometry at the points of a surface rule.
 
     Parameters
     ----------
@@ -184,10 +183,7 @@ def section_geometry(
     shape : Interpolation
     weights : ndarray, shape (elements, p) or (p,)
         Of the surface rule, on the parent square.
-    thickness : float
-        m.
-    levels : int
-        Gauss points through the thickness.
+    sections : Sections
     """
     A = np.einsum("epan,enx->epax", shape.u, node_coordinates)
     rest = shape.director.shape[-1]
@@ -195,36 +191,38 @@ def section_geometry(
         np.einsum("epan,enx->epax", shape.director[:, :, rows], normals[:, :rest])
         for rows in (slice(0, 1), slice(1, 3))
     )
-    z_parent, z_weights = np.polynomial.legendre.leggauss(levels)
-    z = 0.5 * thickness * z_parent
-    covariant = A[:, :, None] + z[:, None, None] * dD[:, :, None]
+    z = np.broadcast_to(sections.z[:, None], (*A.shape[:2], sections.z.shape[1]))
+    covariant = A[:, :, None] + z[..., None, None] * dD[:, :, None]
     base = np.concatenate([covariant, np.broadcast_to(D[:, :, None], (*covariant.shape[:3], 1, 3))], axis=3)
     G = np.swapaxes(np.linalg.inv(base), -1, -2)
-    volume = np.linalg.det(base) * (0.5 * thickness * z_weights) * weights[..., None]
-    metric = np.einsum("epk,epkax,epkbx->epab", volume, G[..., :2, :], G[..., :2, :])
-    return SectionGeometry(*(np.ascontiguousarray(a) for a in (A, D[:, :, 0], dD, z, G, volume, metric)))
+    volume = np.linalg.det(base) * sections.heights[:, None] * weights[..., None]
+    return SectionGeometry(A, D[:, :, 0], dD, z, G, volume)
 
 
-def least_shifts(geometry: SectionGeometry, thickness: float) -> FloatArray:
-    """Least eigenvalue of the shifter I - z B at the two faces, (elements, p, 2): not positive where layers overlap."""
-    faces = np.array([-0.5, 0.5]) * thickness
+def least_shifts(geometry: SectionGeometry, thickness: FloatArray) -> FloatArray:
+    """Least eigenvalue of the shifter I - z B at the two faces, (elements, p, 2): not positive where layers overlap.
+
+    `thickness` is that of each element (elements,), m.
+    """
+    faces = np.array([-0.5, 0.5]) * thickness[:, None]
     metric = np.einsum("epax,epbx->epab", geometry.A, geometry.A)
     slope = np.einsum("epax,epbx->epab", geometry.dD, geometry.A)
     curvatures = np.linalg.eigvals(np.linalg.solve(metric, slope)).real
-    return np.asarray(1.0 + np.min(faces[:, None] * curvatures[:, :, None], axis=-1))
+    return np.asarray(1.0 + np.min(faces[:, None, :, None] * curvatures[:, :, None], axis=-1))
 
 
-def unit_forces(geometry: SectionGeometry, shape: Interpolation) -> FloatArray:
-    """Forces of a stress of 1 Pa whose contributions do not cancel: norms over all elements for u, w, φ, ω and α.
+def unit_forces(geometry: SectionGeometry, shape: Interpolation, modulus: FloatArray) -> FloatArray:
+    """Forces of a stress as large as the modulus whose contributions do not cancel: norms for u, w, φ, ω and α.
 
-    A stress is known to round-off times the modulus, so this times both is how small a residual can be told from zero.
+    A stress is known to round-off times the modulus, so this tells how small a residual can be told from zero.
+    `modulus` is that of each level (elements, p, k), Pa.
     """
-    volume, z = geometry.volume, np.abs(geometry.z)
+    volume, z = geometry.volume * modulus, np.abs(geometry.z)
     leg = np.linalg.norm(geometry.G, axis=-1)
     u = np.einsum("epan,epka,epk->en", np.abs(shape.u), leg[..., :2], volume)
-    w = np.einsum("epan,epka,k,epk->en", np.abs(shape.director[:, :, 1:]), leg[..., :2], z, volume)
+    w = np.einsum("epan,epka,epk->en", np.abs(shape.director[:, :, 1:]), leg[..., :2], z * volume)
     w += np.einsum("epn,epk,epk->en", np.abs(shape.director[:, :, 0]), leg[..., 2], volume)
-    φ = 2.0 * np.einsum("epn,epk,k,epk->en", np.abs(shape.phi), leg[..., 2], z, volume)
+    φ = 2.0 * np.einsum("epn,epk,epk->en", np.abs(shape.phi), leg[..., 2], z * volume)
     ω = np.einsum("epn,epk->en", np.abs(shape.rotation[:, :, 0]), volume)
     α = np.einsum("epam,epka,epk->em", np.abs(shape.enhancement), leg, volume)
     return np.array([np.linalg.norm(forces) for forces in (u, w, φ, ω, α)])

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from magshell.arrays import FloatArray
 from magshell.compiled import inline
-from magshell.shell.geometry import SectionGeometry
-from magshell.shell.point import ENHANCED, PHI, U1, W1, W
+from magshell.shell.point import ENHANCED, PHI, U1, W1, Record, W
 
 
 @inline
-def base_vectors(geometry: SectionGeometry, e: int, p: int, z: float, x: FloatArray, g: FloatArray) -> None:
+def base_vectors(point: Record, z: float, x: FloatArray, g: FloatArray) -> None:
     """Fill g (3, 3): rows g_1, g_2, g_3 at the level z."""
     for i in range(3):
-        g[0, i] = geometry.A[e, p, 0, i] + x[U1 + i] + z * (geometry.dD[e, p, 0, i] + x[W1 + i])
-        g[1, i] = geometry.A[e, p, 1, i] + x[U1 + 3 + i] + z * (geometry.dD[e, p, 1, i] + x[W1 + 3 + i])
-        g[2, i] = (1.0 + 2.0 * z * x[PHI]) * (geometry.D[e, p, i] + x[W + i]) + x[ENHANCED + i]
+        g[0, i] = point.A[0, i] + x[U1 + i] + z * (point.dD[0, i] + x[W1 + i])
+        g[1, i] = point.A[1, i] + x[U1 + 3 + i] + z * (point.dD[1, i] + x[W1 + 3 + i])
+        g[2, i] = (1.0 + 2.0 * z * x[PHI]) * (point.D[i] + x[W + i]) + x[ENHANCED + i]
 
 
 @inline

@@ -1,7 +1,6 @@
-"""Loops over the elements: residual and tangent, enhanced parameters, predicted stresses.
+"""Loops over the elements: matrices and forces, enhanced parameters, predicted stresses.
 
 Nodal arrays have ten columns: u (3), w (3), φ, spin ϑ (3); a column that a node does not carry stays zero.
-Rows and columns of nodes with a frame of their own (oblique supports) are turned into that frame.
 """
 
 from __future__ import annotations
@@ -12,8 +11,8 @@ import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.compiled import Kernel, inline
-from magshell.magnetics.law import Coupling
-from magshell.materials.law import Material
+from magshell.magnetics.law import callbacks as couplings
+from magshell.materials.law import callbacks as materials
 from magshell.shell.bubble import Hold, hold_vector
 from magshell.shell.element import (
     Layout,
@@ -28,11 +27,10 @@ from magshell.shell.element import (
     spin_derivatives,
     transpose,
 )
-from magshell.shell.geometry import Interpolation, SectionGeometry
 from magshell.shell.plane_stress import eliminate_stretch
-from magshell.shell.point import SIZE, workspace
+from magshell.shell.point import INTERNAL, MAGNETIC, PADDED, SIZE, workspace
 from magshell.shell.rotation import LAST, NEXT
-from magshell.shell.section import predicted_stress, section
+from magshell.shell.section import Laws, Request, predicted_stress, section
 from magshell.shell.state import State
 from magshell.shell.unknowns import COMPONENTS
 
@@ -46,23 +44,25 @@ class Body(NamedTuple):
     ----------
     elements : ndarray, shape (elements, 8)
     layout : Layout
-    geometry : SectionGeometry
-    shape : Interpolation
-    remanence : ndarray, shape (elements, points, 3)
-        T.
-    plane_stress : bool
-        Whether φ is eliminated at each point.
+    points : ndarray of POINT, shape (elements, points)
+    levels : ndarray of LEVEL, shape (elements, points, levels)
+    enhancement : ndarray, shape (elements, points, 3, modes)
+        What the element's own parameters add to g_1, g_2, g_3.
+    laws : Laws
     hold : Hold
         What holds the bubbles of u and the turning fields of triangles.
+    plane_stress : bool
+        Whether φ is eliminated at each point.
     """
 
     elements: IntArray
     layout: Layout
-    geometry: SectionGeometry
-    shape: Interpolation
-    remanence: FloatArray
-    plane_stress: bool
+    points: AnyArray
+    levels: AnyArray
+    enhancement: FloatArray
+    laws: Laws
     hold: Hold
+    plane_stress: bool
 
 
 class Stresses(NamedTuple):
@@ -72,94 +72,33 @@ class Stresses(NamedTuple):
     kappa: FloatArray
 
 
-class Equations(NamedTuple):
-    """Where an element's values go.
+class Filled(NamedTuple):
+    """What `fill` fills, for a range of elements but for the last four: sums over all of them.
 
     Attributes
     ----------
-    local_node, local_component : ndarray, shape (values,)
-        Node of the element and column of the nodal arrays of each of the element's values.
-    number : ndarray, shape (nodes, 10)
-        Equation, -1 where fixed or absent.
-    rank : ndarray, shape (nodes, 10)
-        Equation minus the node's first one.
-    whole : ndarray of bool, shape (nodes,)
-        Whether every component that the node carries is free.
-    indptr : ndarray, shape (equations + 1,)
-        Column pointers of the matrix.
-    offset : ndarray, shape (elements, 8, 8)
-        Position of the first row of node I in the columns of node J, at [e, J, I].
-    frame_of : ndarray, shape (nodes, 3)
-        Frame of the node's u, w and spin, -1 for the global one.
-    frames : ndarray, shape (frames, 3, 3)
-        Rows are the frame's base vectors.
-    """
-
-    local_node: IntArray
-    local_component: IntArray
-    number: IntArray
-    rank: IntArray
-    whole: AnyArray
-    indptr: IntArray
-    offset: IntArray
-    frame_of: IntArray
-    frames: FloatArray
-
-
-class Assembled(NamedTuple):
-    """What `assemble` fills.
-
-    Attributes
-    ----------
-    data : ndarray, shape (nonzeros,)
-        Values of the condensed tangent, compressed columns.
-    residual : ndarray, shape (nodes, 10)
-        Internal minus external forces.
-    condensed : ndarray, shape (nodes, 10)
-        The same after the elimination of α, plus the tangent's product with the imposed increments.
+    K : ndarray, shape (range, values + 3 modes, padded)
+        Transposed condensed tangents; only rows and columns of nodal values count.
+    r : ndarray, shape (range, values + 3 modes, 2)
+        Residuals as they are, and condensed.
     gain : ndarray, shape (elements, 3 modes, values)
     offset : ndarray, shape (elements, 3 modes)
-        Δα = -offset - gain Δv.
+        Δα = -offset - gain Δv, of all elements.
+    energy : ndarray, shape (elements, 2)
+        Elastic and magnetic, J, of all elements.
     scale : ndarray, shape (4, 2)
         Of u, w, φ, ω: sums of squares of the elements' internal forces and of their magnetic forces.
     enhancement_residual : ndarray, shape (1,)
         Sum of squares of the residuals of α.
     """
 
-    data: FloatArray
-    residual: FloatArray
-    condensed: FloatArray
+    K: FloatArray
+    r: FloatArray
     gain: FloatArray
     offset: FloatArray
+    energy: FloatArray
     scale: FloatArray
     enhancement_residual: FloatArray
-
-
-@inline
-def _turn_rows(nodes: IntArray, equations: Equations, layout: Layout, rows: FloatArray) -> None:
-    """Rotate the rows of each node's vectors into the node's own frame."""
-    width = rows.shape[1]
-    for field in range(3):
-        component = 0 if field == 0 else 3 if field == 1 else 7
-        stride = carriers(component, layout)
-        for n in range(stride):
-            frame = equations.frame_of[nodes[n], field]
-            if frame < 0:
-                continue
-            R, at = equations.frames[frame], place(component, n, layout)
-            for j in range(width):
-                a0, a1, a2 = rows[at, j], rows[at + stride, j], rows[at + 2 * stride, j]
-                for i in range(3):
-                    rows[at + i * stride, j] = R[i, 0] * a0 + R[i, 1] * a1 + R[i, 2] * a2
-
-
-@inline
-def _one_rotation_held(number: IntArray) -> bool:
-    """Whether a node has exactly one held component of rotation."""
-    held = 0
-    for c in range(COMPONENTS - 3, COMPONENTS):
-        held += number[c] < 0
-    return held == 1
 
 
 @inline
@@ -176,159 +115,77 @@ def _add_spin_transport(r: FloatArray, layout: Layout, n: int, Kt: FloatArray) -
         Kt[j, k] -= half
 
 
-@inline
-def _scatter_tangent(
-    e: int,
-    nodes: IntArray,
-    equations: Equations,
-    layout: Layout,
-    Kt: FloatArray,
-    imposed: FloatArray,
-    data: FloatArray,
-    condensed: FloatArray,
-) -> None:
-    """Add the element's tangent to the matrix, and its product with imposed increments to `condensed`.
-
-    The rows of one node lie side by side in a column.
-    """
-    nu, nw, nφ, nq = layout.u, layout.w, layout.phi, layout.q
-    at_w, at_φ, at_q = place(3, 0, layout), place(6, 0, layout), place(7, 0, layout)
-    for component in range(COMPONENTS):
-        for J in range(carriers(component, layout)):
-            number, K = equations.number[nodes[J], component], Kt[place(component, J, layout)]
-            if number < 0:
-                if imposed[nodes[J], component] != 0.0:
-                    for c in range(COMPONENTS):
-                        for I in range(carriers(c, layout)):
-                            condensed[nodes[I], c] += K[place(c, I, layout)] * imposed[nodes[J], component]
-                continue
-            start = equations.indptr[number]
-            for I in range(nu):
-                node, at = nodes[I], start + equations.offset[e, J, I]
-                if equations.whole[node]:
-                    for c in range(3):
-                        data[at + c] += K[c * nu + I]
-                    at += 3
-                    if I < nw:
-                        for c in range(3):
-                            data[at + c] += K[at_w + c * nw + I]
-                        at += 3
-                    if I < nφ:
-                        data[at] += K[at_φ + I]
-                        at += 1
-                    if I < nq:
-                        for c in range(3):
-                            data[at + c] += K[at_q + c * nq + I]
-                else:
-                    for c in range(COMPONENTS):
-                        if equations.number[node, c] >= 0 and I < carriers(c, layout):
-                            data[at + equations.rank[node, c]] += K[place(c, I, layout)]
-
-
 @Kernel
-def assemble(
-    material: Material,
-    couple_modulus: float,
-    coupling: Coupling,
-    B: FloatArray,
-    body: Body,
-    state: State,
-    stresses: Stresses,
-    mixed: bool,
-    tangent: bool,
-    imposed: FloatArray,
-    equations: Equations,
-    out: Assembled,
+def fill(
+    body: Body, state: State, stresses: Stresses, request: Request, transported: AnyArray, first: int, out: Filled
 ) -> tuple[int, float]:
-    """Residual and, with `tangent`, the condensed tangent; returns the first inverted element (or -1), det F there."""
-    shape, geometry = body.shape, body.geometry
-    layout, points, rest, modes = body.layout, geometry.volume.shape[1], body.layout.q, body.layout.modes
+    """Fill in what the elements from `first` on are; returns the first inverted element (or -1), and det F there.
+
+    The spins of nodes in `transported` (nodes,) are those of the new state in the reaction, too.
+    """
+    layout, rest, modes = body.layout, body.layout.q, body.layout.modes
     nodal = place(10, 0, layout)
-    size = nodal + 3 * modes
+    size, tangent = nodal + 3 * modes, request.tangent
     full = size + rest
-    v, x, w, T, radial = np.zeros(full), np.zeros(SIZE), workspace(), np.zeros((rest, 4, 3)), np.zeros(rest)
-    narrow, wide = padded(SIZE), padded(size)
-    g, g_mixed, H = np.zeros((SIZE, 2)), np.zeros(SIZE), np.zeros((SIZE, narrow))
-    scratch, scratch_2 = np.zeros((4, wide)), np.zeros((4, 2))
-    GH, HG, Kt, r = (
-        np.zeros((size, narrow)),
-        np.zeros((SIZE, wide)),
-        np.zeros((size, wide)),
-        np.zeros((size, 2)),
-    )
+    v, T, radial = np.zeros(full), np.zeros((rest, 4, 3)), np.zeros(rest)
+    wide = padded(size)
+    scratch, vectors, forces = np.zeros((4, wide)), np.zeros((4, 3)), np.zeros((size, 2))
+    GH, HG = np.zeros((size, PADDED)), np.zeros((SIZE, wide))
     r_sum, factor = np.zeros(size), np.zeros((3 * modes, 3 * modes + nodal + 1))
-    vectors, kind_of = np.zeros((4, 3)), equations.local_component
-    if tangent:
-        out.data[:] = 0.0
-        out.condensed[:, :] = 0.0
-    out.residual[:, :] = 0.0
-    out.scale[:, :] = 0.0
-    out.enhancement_residual[0] = 0.0
-    for e in range(len(body.elements)):
-        nodes = body.elements[e]
-        gather(nodes, state.u, state.w, state.phi, state.q, state.alpha[e], layout, v)
+    records = workspace()
+    w = records[0]
+    at_points = Request(request.flux_density, request.mixed, tangent or body.plane_stress)
+    for e in range(first, min(first + len(out.K), len(body.elements))):
+        nodes, Kt, r = body.elements[e], out.K[e - first], out.r[e - first]
+        gather(nodes, state, state.alpha[e], layout, v)
         spin_derivatives(v, layout, T)
-        r[:, :] = 0.0
-        Kt[:, :] = 0.0
-        radial[:] = 0.0
-        for p in range(points):
-            point_values(shape, e, p, layout, v, x)
+        forces[:, :], Kt[:, :], radial[:] = 0.0, 0.0, 0.0
+        out.energy[e, :] = 0.0
+        for p in range(body.points.shape[1]):
+            point, levels, enhancement = body.points[e, p], body.levels[e, p], body.enhancement[e, p]
+            point_values(point, enhancement, layout, v, w.x)
             eliminated = not body.plane_stress
             for _ in range(ELIMINATION_STEPS):
-                J = section(
-                    material, couple_modulus, coupling, B, geometry, body.remanence, e, p, x,
-                    stresses.S[e, p], stresses.kappa[e, p], mixed, tangent or body.plane_stress, w, g, g_mixed, H,
-                )  # fmt: skip
+                J = section(w, point, levels, body.laws, at_points, stresses.S[e, p], stresses.kappa[e, p])
                 if not J > 0.0:
                     return e, J
-                eliminated = eliminated or eliminate_stretch(geometry.z[-1], x, g, H)
+                eliminated = eliminated or eliminate_stretch(w, levels[len(levels) - 1].z)
                 if eliminated:
                     break
             if not eliminated:
                 return e, 0.0
-            contract(shape, e, p, layout, T, g, scratch_2, r)
+            out.energy[e, INTERNAL] += w.energy[INTERNAL]
+            out.energy[e, MAGNETIC] += w.energy[MAGNETIC]
+            contract(point, enhancement, layout, T, w.g, scratch, forces)
             if tangent:
                 GH[:, :] = 0.0
-                contract(shape, e, p, layout, T, H, scratch, GH)
+                contract(point, enhancement, layout, T, w.H, scratch, GH)
                 transpose(GH, HG)
-                contract(shape, e, p, layout, T, HG, scratch, Kt)
-                add_radial_force(shape, e, p, layout, g_mixed, v, radial)
+                contract(point, enhancement, layout, T, HG, scratch, Kt)
+                add_radial_force(point, layout, w.g, v, radial)
         for number in range(len(body.hold.k)):
-            hold_vector(body.hold, number, e, layout, v, state.alpha[e, modes - 1 - number], vectors, r[:, 0], Kt)
-        for l in range(nodal):
-            c = kind_of[l]
-            kind = 0 if c < 3 else 1 if c < 6 else 2 if c == 6 else 3
-            out.scale[kind, 0] += r[l, 0] ** 2
-            out.scale[kind, 1] += r[l, 1] ** 2
+            alpha = state.alpha[e, modes - 1 - number]
+            out.energy[e, INTERNAL] += hold_vector(body.hold, number, e, layout, v, alpha, vectors, forces, Kt)
         for l in range(size):
-            r_sum[l] = r[l, 0] + r[l, 1]
-        for l in range(nodal, size):
-            out.enhancement_residual[0] += r_sum[l] ** 2
+            r_sum[l] = forces[l, INTERNAL] + forces[l, MAGNETIC]
+            r[l, 0] = r_sum[l]
+            if l < nodal:
+                kind = 0 if l < 3 * layout.u else 1 if l < place(6, 0, layout) else 2 if l < place(7, 0, layout) else 3
+                out.scale[kind, INTERNAL] += forces[l, INTERNAL] ** 2
+                out.scale[kind, MAGNETIC] += forces[l, MAGNETIC] ** 2
+            else:
+                out.enhancement_residual[0] += r_sum[l] ** 2
         if tangent:
             for n in range(rest):
                 for c in range(7, 10):
                     at = place(c, n, layout)
                     Kt[at, at] -= 0.25 * radial[n]
-                if _one_rotation_held(equations.number[nodes[n]]):
+                if transported[nodes[n]]:
                     _add_spin_transport(r_sum, layout, n, Kt)
-            for l in range(size):
-                r[l, 0] = r_sum[l]
             if not condense(Kt, r_sum, nodal, out.gain[e], out.offset[e], factor):
                 return e, 0.0
             for l in range(size):
                 r[l, 1] = r_sum[l]
-            _turn_rows(nodes, equations, layout, Kt)
-            _turn_rows(nodes, equations, layout, Kt.T)
-        else:
-            for l in range(size):
-                r[l, 0] = r_sum[l]
-        _turn_rows(nodes, equations, layout, r)
-        for l in range(nodal):
-            out.residual[nodes[equations.local_node[l]], kind_of[l]] += r[l, 0]
-        if tangent:
-            for l in range(nodal):
-                out.condensed[nodes[equations.local_node[l]], kind_of[l]] += r[l, 1]
-            _scatter_tangent(e, nodes, equations, layout, Kt, imposed, out.data, out.condensed)
     return -1, 1.0
 
 
@@ -365,23 +222,17 @@ def recover_enhancement(
 
 
 @Kernel
-def predict_stresses(
-    material: Material,
-    body: Body,
-    state: State,
-    increment: FloatArray,
-    d_alpha: FloatArray,
-    stresses: Stresses,
-) -> None:
+def predict_stresses(body: Body, state: State, increment: FloatArray, d_alpha: FloatArray, stresses: Stresses) -> None:
     """Fill the stresses predicted linearly from `state` for a nodal increment (nodes, 10) and Δα."""
-    shape, geometry, layout = body.shape, body.geometry, body.layout
+    layout = body.layout
     modes, rest, at = layout.modes, layout.q, place(7, 0, layout)
     full = place(10, 0, layout) + rest + 3 * modes
     v, dv, spins = np.zeros(full), np.zeros(full), np.zeros(place(10, 0, layout))
-    x, dx, w, T = np.zeros(SIZE), np.zeros(SIZE), workspace(), np.zeros((rest, 4, 3))
+    dx, T, records = np.zeros(SIZE), np.zeros((rest, 4, 3)), workspace()
+    w = records[0]
     for e in range(len(body.elements)):
         nodes = body.elements[e]
-        gather(nodes, state.u, state.w, state.phi, state.q, state.alpha[e], layout, v)
+        gather(nodes, state, state.alpha[e], layout, v)
         _gather_increment(nodes, increment, layout, spins)
         for l in range(at):
             dv[l] = spins[l]
@@ -395,19 +246,14 @@ def predict_stresses(
         for m in range(modes):
             for i in range(3):
                 dv[at + 4 * rest + i * modes + m] = d_alpha[e, m, i]
-        for p in range(geometry.volume.shape[1]):
-            point_values(shape, e, p, layout, v, x)
-            point_values(shape, e, p, layout, dv, dx)
-            predicted_stress(material, geometry, e, p, x, dx, w, stresses.S[e, p], stresses.kappa[e, p])
+        for p in range(body.points.shape[1]):
+            point, levels, enhancement = body.points[e, p], body.levels[e, p], body.enhancement[e, p]
+            point_values(point, enhancement, layout, v, w.x)
+            point_values(point, enhancement, layout, dv, dx)
+            predicted_stress(w, dx, point, levels, body.laws, stresses.S[e, p], stresses.kappa[e, p])
 
 
 def are_compiled(material: type, coupling: type) -> bool:
-    """Whether all kernels of a solve wait in the cache for these laws."""
-    return all(
-        kernel.is_compiled(*laws)
-        for kernel, laws in (
-            (assemble, (material, coupling)),
-            (predict_stresses, (material,)),
-            (recover_enhancement, ()),
-        )
-    )
+    """Whether all that a solve compiles waits in the cache for these laws."""
+    made = (fill, predict_stresses, recover_enhancement, materials[material], couplings[coupling])
+    return all(one.is_compiled() for one in made)

@@ -7,20 +7,20 @@ gradient and Hessian, a Newton step is Δφ = -g_φ / H_φφ; at the solution φ
 
 from __future__ import annotations
 
-from magshell.arrays import FloatArray
 from magshell.compiled import inline
-from magshell.shell.point import PHI, SIZE
+from magshell.shell.point import PHI, SIZE, Record
 
 # Strains at the outermost level: round-off, and the most that one step may change.
 ROUND_OFF, LARGEST = 1e-13, 0.3
 
 
 @inline
-def eliminate_stretch(z: float, x: FloatArray, g: FloatArray, H: FloatArray) -> bool:
-    """Either move x[PHI] by a Newton step, or, where that is round-off, take φ out of g (31, 2) and H (31, 31).
+def eliminate_stretch(w: Record, z: float) -> bool:
+    """Either move w.x[PHI] by a Newton step, or, where that is round-off, take φ out of w.g and w.H.
 
     z is the outermost level, where a step changes the stretch most. A point of weight zero has nothing to eliminate.
     """
+    x, g, H = w.x, w.g, w.H
     stiffness = H[PHI, PHI]
     if stiffness == 0.0:
         return True

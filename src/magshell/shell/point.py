@@ -1,4 +1,7 @@
-"""What a point sees, x (31,), and the scratch arrays of one thread."""
+"""Records of a point: what it knows of the undeformed shell, what it sees, x (31,), and the scratch of one thread.
+
+Records are passed to compiled functions as one pointer, with shapes known to the compiler.
+"""
 
 from __future__ import annotations
 
@@ -8,28 +11,69 @@ import numpy as np
 
 from magshell.arrays import AnyArray
 from magshell.compiled import allocate
+from magshell.magnetics.law import GRADIENTS, WORK
 
 SIZE = 31
 U1, W1, W, ENHANCED, PHI, Q, Q1 = 0, 6, 12, 15, 18, 19, 23
+# Columns of rows as long as a point's, in whole vector registers of four numbers.
+PADDED = 32
+NODES = 8
+# Columns of the gradient g: internal, magnetic, and what the geometric part of the tangent is made with.
+INTERNAL, MAGNETIC, MIXED = 0, 1, 2
 
-
-#: Scratch arrays of one thread: a record, so that they are passed as one pointer and their shapes are known.
+#: A point of the mid-surface: base A_α (m), director D and D,α, metric c^αβ of the couple stress (N m), and functions of
+#: the element's nodes (see `Interpolation`; those of fewer nodes come first).
+POINT = np.dtype(
+    [
+        ("A", float, (2, 3)),
+        ("D", float, (3,)),
+        ("dD", float, (2, 3)),
+        ("couple_metric", float, (2, 2)),
+        ("u", float, (2, NODES)),
+        ("director", float, (3, NODES)),
+        ("phi", float, (NODES,)),
+        ("rotation", float, (3, NODES)),
+    ]
+)
+#: A level z (m) of a point: dual base G^i (1/m), volume (m³), remanence (T), and which laws hold there.
+LEVEL = np.dtype(
+    [
+        ("z", float),
+        ("volume", float),
+        ("G", float, (3, 3)),
+        ("remanence", float, (3,)),
+        ("material", np.int64),
+        ("coupling", np.int64),
+    ]
+)
+#: Scratch arrays of one thread.
 WORKSPACE = np.dtype(
     [
+        ("x", float, (SIZE,)),
+        ("g", float, (SIZE, 3)),
+        ("H", float, (SIZE, PADDED)),
         ("R", float, (3, 3)),
         ("V", float, (3, 4)),
-        ("g", float, (3, 3)),
+        ("base", float, (3, 3)),
         ("U", float, (3, 3)),
         ("P", float, (3, 3)),
         ("U_inverse_transpose", float, (3, 3)),
         ("S", float, (3, 3)),
         ("C", float, (3, 3, 3, 3)),
         ("C_half", float, (3, 3, 3, 3)),
+        ("dU", float, (3, 3)),
+        ("dP", float, (3, 3)),
         ("t", float, (3, 3)),
         ("t_mixed", float, (3, 3)),
-        ("vectors", float, (6, 3)),
-        ("K_m", float, (3, 3)),
-        ("K_ω", float, (3, 3)),
+        ("m", float, (3,)),
+        ("n", float, (3,)),
+        ("b", float, (3,)),
+        ("d2z", float, (3,)),
+        ("t3", float, (3,)),
+        ("gradients", float, (GRADIENTS,)),
+        ("forces", float, (WORK,)),
+        ("work_tangent", float, (WORK, WORK)),
+        ("memory", float, (1,)),
         ("K_g", float, (3, 3, 3, 3)),
         ("K_gω", float, (3, 3, 3)),
         ("H_gω", float, (Q, 3)),
@@ -43,9 +87,10 @@ WORKSPACE = np.dtype(
         ("kappa", float, (2, 3)),
         ("stress", float, (2, 3)),
         ("couples", float, (3, 3)),
+        ("energy", float, (2,)),
     ]
 )
-Workspace: TypeAlias = Any
+Record: TypeAlias = Any
 
 
 @allocate

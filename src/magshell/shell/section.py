@@ -24,49 +24,51 @@ leaves, in δP = δU S + U δS, the part δU S that is geometric: it lies inside
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from magshell.arrays import AnyArray, FloatArray
-from magshell.compiled import also_compiled, choose_by_type, inline
-from magshell.magnetics import law as coupling_laws
-from magshell.magnetics.law import Coupling
-from magshell.materials import law as material_laws
-from magshell.materials.law import Material
-from magshell.materials.tensors import fill_inverse_transpose, inverse_transpose
+from magshell.arrays import AnyArray, FloatArray, IntArray
+from magshell.compiled import call, inline
+from magshell.magnetics.law import OMEGA, WORK, M
+from magshell.materials.tensors import fill_inverse_transpose
 from magshell.shell.couple_stress import couple_stress
-from magshell.shell.geometry import SectionGeometry
 from magshell.shell.kinematics import base_vectors, moduli_on_legs, stress_vectors, stretch
-from magshell.shell.point import ENHANCED, PHI, Q1, U1, W1, Q, W, Workspace
+from magshell.shell.point import ENHANCED, INTERNAL, MAGNETIC, MIXED, PHI, Q1, U1, W1, Q, Record, W
 from magshell.shell.rotation import LAST, NEXT, rotation_matrix, spin_map, wryness_maps
 
 
-def _stress_and_tangent(material: Material, U: FloatArray, P: FloatArray, C: FloatArray) -> None:
-    """Stand-in that the compiler replaces by the function of the law in use."""
+class Laws(NamedTuple):
+    """The laws of a body: addresses (n,) for kernels, and parameters (n, most), of materials and of couplings."""
+
+    materials: IntArray
+    material_parameters: FloatArray
+    couplings: IntArray
+    coupling_parameters: FloatArray
 
 
-def _forces_and_tangent(
-    coupling: Coupling,
-    m: FloatArray,
-    n: FloatArray,
-    B: FloatArray,
-    f: FloatArray,
-    c: FloatArray,
-    K_m: FloatArray,
-    K_ω: FloatArray,
-) -> None:
-    """Stand-in that the compiler replaces by the function of the law in use."""
+class Request(NamedTuple):
+    """What is asked of points and elements.
 
+    Attributes
+    ----------
+    flux_density : ndarray, shape (3,)
+        T.
+    mixed : bool
+        Whether the geometric part of the tangent is made with given stresses in place of the state's.
+    tangent : bool
+        Whether there is to be a tangent.
+    """
 
-also_compiled(fill_inverse_transpose)
-also_compiled(inverse_transpose)
-choose_by_type(_stress_and_tangent, material_laws.stresses_of)
-choose_by_type(_forces_and_tangent, coupling_laws.forces_of)
+    flux_density: FloatArray
+    mixed: bool
+    tangent: bool
 
 
 @inline
-def _level_hessian(w: Workspace, c_ω: FloatArray) -> None:
-    """From K_g = C^ij, g and the stresses of the geometric part: K_gω, and add to H_ωω."""
-    g, t, K = w.g, w.t_mixed, w.K_g
+def _level_hessian(w: Record) -> None:
+    """From K_g = C^ij, g and the stresses of the geometric part: K_gω, and add to H_ωω and the couple."""
+    g, t, K, K_gω, H_ωω, couple = w.base, w.t_mixed, w.K_g, w.K_gω, w.H_ωω, w.couples[MIXED]
     for a in range(3):
         for i in range(3):
             s0, s1, s2 = 0.0, 0.0, 0.0
@@ -75,271 +77,273 @@ def _level_hessian(w: Workspace, c_ω: FloatArray) -> None:
                 s0 += c1 * g[b, 2] - c2 * g[b, 1]
                 s1 += c2 * g[b, 0] - c0 * g[b, 2]
                 s2 += c0 * g[b, 1] - c1 * g[b, 0]
-            w.K_gω[a, i, 0], w.K_gω[a, i, 1], w.K_gω[a, i, 2] = s0, s1, s2
+            K_gω[a, i, 0], K_gω[a, i, 1], K_gω[a, i, 2] = s0, s1, s2
     for a in range(3):
         dot = g[a, 0] * t[a, 0] + g[a, 1] * t[a, 1] + g[a, 2] * t[a, 2]
         for i in range(3):
             j, k = NEXT[i], LAST[i]
             for l in range(3):
-                w.H_ωω[i, l] += w.K_gω[a, j, l] * g[a, k] - w.K_gω[a, k, l] * g[a, j]
-                w.H_ωω[i, l] += 0.5 * (g[a, i] * t[a, l] + t[a, i] * g[a, l])
-            w.H_ωω[i, i] -= dot
-            c_ω[i] -= g[a, j] * t[a, k] - g[a, k] * t[a, j]
+                H_ωω[i, l] += K_gω[a, j, l] * g[a, k] - K_gω[a, k, l] * g[a, j]
+                H_ωω[i, l] += 0.5 * (g[a, i] * t[a, l] + t[a, i] * g[a, l])
+            H_ωω[i, i] -= dot
+            couple[i] -= g[a, j] * t[a, k] - g[a, k] * t[a, j]
     for a in range(3):
         for i in range(3):
             j, k = NEXT[i], LAST[i]
-            w.K_gω[a, k, j] -= t[a, i]
-            w.K_gω[a, j, k] += t[a, i]
+            K_gω[a, k, j] -= t[a, i]
+            K_gω[a, j, k] += t[a, i]
 
 
 @inline
-def _scatter_level(
-    w: Workspace,
-    z: float,
-    phi: float,
-    d2z: FloatArray,
-    b: FloatArray,
-    t3: FloatArray,
-    volume: float,
-    H: FloatArray,
-) -> None:
+def _scatter_level(w: Record, z: float, volume: float) -> None:
     """Chain (g_1, g_2, g_3, ω) to (u,α  w,α  w  ā  φ  ω): add to H, H_gω, H_ωg.
 
-    b^a = G^a · B̃ carries the magnetic K_m; d2z = 2 z d; t3 the whole stress vector t^3 of the bilinear term.
+    b^a = G^a · B̃ carries the coupling's tangent by m; d2z = 2 z d; t3 is the whole stress vector t^3 of the bilinear
+    term.
     """
-    s = 1.0 + 2.0 * z * phi
+    s = 1.0 + 2.0 * z * w.x[PHI]
+    b, d2z, H, K_g, K_gω, H_gω, H_ωg, T = w.b, w.d2z, w.H, w.K_g, w.K_gω, w.H_gω, w.H_ωg, w.work_tangent
     for a in range(3):
         a1, ca1, a2, ca2 = (12, s, 15, 1.0) if a == 2 else (3 * a, 1.0, 6 + 3 * a, z)
         for c in range(3):
             c1, cc1, c2, cc2 = (12, s, 15, 1.0) if c == 2 else (3 * c, 1.0, 6 + 3 * c, z)
             k11, k12, k21, k22 = ca1 * cc1, ca1 * cc2, ca2 * cc1, ca2 * cc2
+            b_ac = volume * b[a] * b[c]
             for i in range(3):
                 for j in range(3):
-                    h = w.K_g[a, i, c, j]
+                    h = K_g[a, i, c, j] + b_ac * T[M + i, M + j]
+                    K_g[a, i, c, j] = h
                     H[a1 + i, c1 + j] += k11 * h
                     H[a1 + i, c2 + j] += k12 * h
                     H[a2 + i, c1 + j] += k21 * h
                     H[a2 + i, c2 + j] += k22 * h
+    for a in range(3):
+        a1, ca1, a2, ca2 = (12, s, 15, 1.0) if a == 2 else (3 * a, 1.0, 6 + 3 * a, z)
         for j in range(3):
-            h = d2z[0] * w.K_g[a, j, 2, 0] + d2z[1] * w.K_g[a, j, 2, 1] + d2z[2] * w.K_g[a, j, 2, 2]
+            row = d2z[0] * K_g[2, 0, a, j] + d2z[1] * K_g[2, 1, a, j] + d2z[2] * K_g[2, 2, a, j]
+            column = d2z[0] * K_g[a, j, 2, 0] + d2z[1] * K_g[a, j, 2, 1] + d2z[2] * K_g[a, j, 2, 2]
             if a == 2:
-                H[PHI, PHI] += d2z[j] * h
-            H[a1 + j, PHI] += ca1 * h
-            H[a2 + j, PHI] += ca2 * h
-            H[PHI, a1 + j] += ca1 * h
-            H[PHI, a2 + j] += ca2 * h
+                H[PHI, PHI] += d2z[j] * column
+            H[PHI, a1 + j] += ca1 * row
+            H[PHI, a2 + j] += ca2 * row
+            H[a1 + j, PHI] += ca1 * column
+            H[a2 + j, PHI] += ca2 * column
+        b_a = volume * b[a]
         for i in range(3):
             for j in range(3):
-                h = w.K_gω[a, i, j]
-                w.H_gω[a1 + i, j] += ca1 * h
-                w.H_gω[a2 + i, j] += ca2 * h
-                h += volume * b[a] * w.K_m[j, i]
-                w.H_ωg[j, a1 + i] += ca1 * h
-                w.H_ωg[j, a2 + i] += ca2 * h
+                h_gω = K_gω[a, i, j] + b_a * T[M + i, OMEGA + j]
+                h_ωg = K_gω[a, i, j] + b_a * T[OMEGA + j, M + i]
+                H_gω[a1 + i, j] += ca1 * h_gω
+                H_gω[a2 + i, j] += ca2 * h_gω
+                H_ωg[j, a1 + i] += ca1 * h_ωg
+                H_ωg[j, a2 + i] += ca2 * h_ωg
                 if a == 2:
-                    w.H_gω[PHI, j] += d2z[i] * w.K_gω[a, i, j]
-                    w.H_ωg[j, PHI] += d2z[i] * h
+                    H_gω[PHI, j] += d2z[i] * h_gω
+                    H_ωg[j, PHI] += d2z[i] * h_ωg
     for i in range(3):
-        H[PHI, W + i] += 2.0 * z * t3[i]
-        H[W + i, PHI] += 2.0 * z * t3[i]
+        H[PHI, W + i] += 2.0 * z * w.t3[i]
+        H[W + i, PHI] += 2.0 * z * w.t3[i]
 
 
 @inline
-def _spin_to_quaternion(w: Workspace, q: FloatArray, n2: float, c: FloatArray, H: FloatArray) -> None:
-    """Chain the spin to q̂: ω = 2 V δq̂ - 2 (V δq̂)(q̂·δq̂)/n²; c is the gradient with respect to ω."""
-    for i in range(Q):
-        for b in range(4):
-            H[i, Q + b] = 2.0 * (w.H_gω[i, 0] * w.V[0, b] + w.H_gω[i, 1] * w.V[1, b] + w.H_gω[i, 2] * w.V[2, b])
-            H[Q + b, i] = 2.0 * (w.H_ωg[0, i] * w.V[0, b] + w.H_ωg[1, i] * w.V[1, b] + w.H_ωg[2, i] * w.V[2, b])
-    for a in range(4):
-        h0 = 4.0 * (w.V[0, a] * w.H_ωω[0, 0] + w.V[1, a] * w.H_ωω[1, 0] + w.V[2, a] * w.H_ωω[2, 0])
-        h1 = 4.0 * (w.V[0, a] * w.H_ωω[0, 1] + w.V[1, a] * w.H_ωω[1, 1] + w.V[2, a] * w.H_ωω[2, 1])
-        h2 = 4.0 * (w.V[0, a] * w.H_ωω[0, 2] + w.V[1, a] * w.H_ωω[1, 2] + w.V[2, a] * w.H_ωω[2, 2])
-        c_a = w.V[0, a] * c[0] + w.V[1, a] * c[1] + w.V[2, a] * c[2]
-        for b in range(4):
-            c_b = w.V[0, b] * c[0] + w.V[1, b] * c[1] + w.V[2, b] * c[2]
-            H[Q + a, Q + b] = h0 * w.V[0, b] + h1 * w.V[1, b] + h2 * w.V[2, b]
-            H[Q + a, Q + b] -= 2.0 * (c_a * q[b] + c_b * q[a]) / n2
+def _spin_to_quaternion(w: Record, n2: float) -> None:
+    """Chain the spin to q̂: ω = 2 V δq̂ - 2 (V δq̂)(q̂·δq̂)/n²."""
+    V, H, H_ωω, c = w.V, w.H, w.H_ωω, w.couples[MIXED]
+    for b in range(4):
+        v0, v1, v2 = 2.0 * V[0, b], 2.0 * V[1, b], 2.0 * V[2, b]
+        for i in range(Q):
+            H[i, Q + b] = w.H_gω[i, 0] * v0 + w.H_gω[i, 1] * v1 + w.H_gω[i, 2] * v2
+            H[Q + b, i] = w.H_ωg[0, i] * v0 + w.H_ωg[1, i] * v1 + w.H_ωg[2, i] * v2
+        c_b = (c[0] * v0 + c[1] * v1 + c[2] * v2) / n2
+        for a in range(4):
+            h = 0.0
+            for i in range(3):
+                h += 2.0 * V[i, a] * (H_ωω[i, 0] * v0 + H_ωω[i, 1] * v1 + H_ωω[i, 2] * v2)
+            H[Q + a, Q + b] += h - c_b * w.x[Q + a]
+            H[Q + b, Q + a] -= c_b * w.x[Q + a]
 
 
 @inline
-def _second_stress(w: Workspace, S: FloatArray) -> None:
+def _second_stress(w: Record, S: FloatArray) -> None:
     """Fill S (3, 3) = U⁻¹ P."""
-    V = w.U_inverse_transpose
+    V, P = w.U_inverse_transpose, w.P
     fill_inverse_transpose(w.U, V)
     for j in range(3):
         for l in range(3):
-            S[j, l] = V[0, j] * w.P[0, l] + V[1, j] * w.P[1, l] + V[2, j] * w.P[2, l]
+            S[j, l] = V[0, j] * P[0, l] + V[1, j] * P[1, l] + V[2, j] * P[2, l]
 
 
 @inline
-def _mix(w: Workspace, S_mixed: FloatArray) -> None:
+def _mix(w: Record, S_mixed: FloatArray) -> None:
     """Put S' in place of S in the geometric part of C, and P = U S'. (Symmetrised in C, as S is but for η.)"""
-    S = w.S
+    S, U, P, C = w.S, w.U, w.P, w.C
     _second_stress(w, S)
     for j in range(3):
         for l in range(3):
             difference = 0.5 * (S_mixed[j, l] - S[j, l] + S_mixed[l, j] - S[l, j])
             for p in range(3):
-                w.C[p, j, p, l] += difference
+                C[p, j, p, l] += difference
     for p in range(3):
         for l in range(3):
-            w.P[p, l] = w.U[p, 0] * S_mixed[0, l] + w.U[p, 1] * S_mixed[1, l] + w.U[p, 2] * S_mixed[2, l]
+            P[p, l] = U[p, 0] * S_mixed[0, l] + U[p, 1] * S_mixed[1, l] + U[p, 2] * S_mixed[2, l]
+
+
+@inline
+def _stress(w: Record, laws: Laws, material: int) -> float:
+    """Fill P and C; returns the strain energy per volume. A law that raises an error leaves NaN."""
+    w.P[0, 0] = np.nan
+    parameters = laws.material_parameters[material]
+    address = laws.materials[material]
+    energy: float = call(address, parameters, w.U, w.memory, 0.0, 0.0, w.P, w.C, w.memory)
+    return energy
+
+
+@inline
+def _work(w: Record, laws: Laws, coupling: int, B: FloatArray) -> float:
+    """Fill the coupling's forces and tangent; returns its energy per volume."""
+    forces, tangent = w.forces, w.work_tangent
+    for i in range(WORK):
+        forces[i] = 0.0
+        for j in range(WORK):
+            tangent[i, j] = 0.0
+    parameters, address = laws.coupling_parameters[coupling], laws.couplings[coupling]
+    energy: float = call(address, parameters, w.m, w.n, B, w.gradients, forces, tangent)
+    return energy
 
 
 @inline
 def section(
-    material: Material,
-    couple_modulus: float,
-    coupling: Coupling,
-    B: FloatArray,
-    geometry: SectionGeometry,
-    remanence: FloatArray,
-    e: int,
-    p: int,
-    x: FloatArray,
+    w: Record,
+    point: Record,
+    levels: AnyArray,
+    laws: Laws,
+    request: Request,
     S_mixed: FloatArray,
     kappa_mixed: FloatArray,
-    mixed: bool,
-    tangent: bool,
-    scratch: AnyArray,
-    g: FloatArray,
-    g_mixed: FloatArray,
-    H: FloatArray,
 ) -> float:
-    """Gradient and Hessian of point p of element e; returns the least det F through the thickness.
+    """Gradient and Hessian of a point that sees w.x; returns the least det F through the thickness.
 
-    Fills the columns of g (31, 2), internal and magnetic gradient; with `tangent` also H (31, 31), and g_mixed (31,),
-    the whole gradient that the geometric part is made with. A point with det F <= 0 leaves them unfinished.
+    Fills the internal and the magnetic column of w.g; with a tangent also w.H, and the column of w.g that is the whole
+    gradient which the geometric part is made with. Sets w.energy, elastic and magnetic. A point with det F <= 0 leaves
+    them unfinished.
     """
-    w = scratch[0]
-    g[:, :] = 0.0
-    if tangent:
-        g_mixed[:], H[:, :], w.H_gω[:, :], w.H_ωg[:, :], w.H_ωω[:, :] = 0.0, 0.0, 0.0, 0.0, 0.0
-    q = x[Q : Q + 4]
-    n2 = rotation_matrix(q, w.R)
-    spin_map(q, n2, w.V)
-    m, n, f, c, b, d2z = w.vectors[0], w.vectors[1], w.vectors[2], w.vectors[3], w.vectors[4], w.vectors[5]
-    rem = remanence[e, p]
-    for i in range(3):
-        n[i] = w.R[i, 0] * rem[0] + w.R[i, 1] * rem[1] + w.R[i, 2] * rem[2]
-    couple, couple_magnetic, couple_mixed = w.couples[0], w.couples[1], w.couples[2]
-    w.couples[:, :] = 0.0
+    x, g, V, base, t, b, m, n, d2z, couples = w.x, w.g, w.V, w.base, w.t, w.b, w.m, w.n, w.d2z, w.couples
+    forces, tangent = w.forces, request.tangent
+    _clear(w, tangent)
+    n2 = rotation_matrix(x[Q : Q + 4], w.R)
+    spin_map(x[Q : Q + 4], n2, V)
     least = np.inf
-    for k in range(geometry.z.size):
-        z, volume, G = geometry.z[k], geometry.volume[e, p, k], geometry.G[e, p, k]
-        base_vectors(geometry, e, p, z, x, w.g)
-        J = stretch(w.R, w.g, G, w.U)
+    for k in range(len(levels)):
+        z, volume, G, rem = levels[k].z, levels[k].volume, levels[k].G, levels[k].remanence
+        base_vectors(point, z, x, base)
+        J = stretch(w.R, base, G, w.U)
         least = min(least, J)
         if not J > 0.0:
             return J
-        _stress_and_tangent(material, w.U, w.P, w.C)
-        stress_vectors(w.R, w.P, G, volume, w.t)
+        w.energy[INTERNAL] += volume * _stress(w, laws, levels[k].material)
+        stress_vectors(w.R, w.P, G, volume, t)
         for a in range(3):
             b[a] = G[a, 0] * rem[0] + G[a, 1] * rem[1] + G[a, 2] * rem[2]
         for i in range(3):
-            m[i] = b[0] * w.g[0, i] + b[1] * w.g[1, i] + b[2] * w.g[2, i]
-            d2z[i] = 2.0 * z * (geometry.D[e, p, i] + x[W + i])
-        _forces_and_tangent(coupling, m, n, B, f, c, w.K_m, w.K_ω)
+            m[i] = b[0] * base[0, i] + b[1] * base[1, i] + b[2] * base[2, i]
+            n[i] = w.R[i, 0] * rem[0] + w.R[i, 1] * rem[1] + w.R[i, 2] * rem[2]
+            d2z[i] = 2.0 * z * (point.D[i] + x[W + i])
+        w.energy[MAGNETIC] += volume * _work(w, laws, levels[k].coupling, request.flux_density)
         for i in range(3):
-            couple_magnetic[i] += volume * c[i]
-            _add_stress_vector(g[:, 0], i, z, x[PHI], w.t[0, i], w.t[1, i], w.t[2, i], d2z[i])
-            f_i = volume * f[i]
-            _add_stress_vector(g[:, 1], i, z, x[PHI], b[0] * f_i, b[1] * f_i, b[2] * f_i, d2z[i])
+            couples[MAGNETIC, i] += volume * forces[OMEGA + i]
+            force = volume * forces[M + i]
+            _add_stress_vector(w, INTERNAL, i, z, t[0, i], t[1, i], t[2, i])
+            _add_stress_vector(w, MAGNETIC, i, z, b[0] * force, b[1] * force, b[2] * force)
             j, l = NEXT[i], LAST[i]
             for a in range(3):
-                couple[i] -= w.g[a, j] * w.t[a, l] - w.g[a, l] * w.t[a, j]
+                couples[INTERNAL, i] -= base[a, j] * t[a, l] - base[a, l] * t[a, j]
         if tangent:
-            if mixed:
+            if request.mixed:
                 _mix(w, S_mixed[k])
-                stress_vectors(w.R, w.P, G, volume, w.t_mixed)
-            else:
-                for a in range(3):
-                    for i in range(3):
-                        w.t_mixed[a, i] = w.t[a, i]
+            stress_vectors(w.R, w.P, G, volume, w.t_mixed)
             moduli_on_legs(w.R, G, volume, w.C, w.C_half, w.K_g)
-            _level_hessian(w, couple_mixed)
+            _level_hessian(w)
             for i in range(3):
-                f[i] = w.t_mixed[2, i] + volume * b[2] * f[i]
+                w.t3[i] = w.t_mixed[2, i] + volume * b[2] * forces[M + i]
                 for l in range(3):
-                    w.H_ωω[i, l] += volume * w.K_ω[i, l]
-            _scatter_level(w, z, x[PHI], d2z, b, f, volume, H)
+                    w.H_ωω[i, l] += volume * w.work_tangent[OMEGA + i, OMEGA + l]
+            _scatter_level(w, z, volume)
+    for i in range(3):
+        couples[MIXED, i] += couples[MAGNETIC, i]
     for r in range(4):
-        for i in range(3):
-            g[Q + r, 0] += 2.0 * w.V[i, r] * couple[i]
-            g[Q + r, 1] += 2.0 * w.V[i, r] * couple_magnetic[i]
-    if tangent:
-        for i in range(3):
-            couple_mixed[i] += couple_magnetic[i]
-        for r in range(4):
+        for column in range(3):
             for i in range(3):
-                g_mixed[Q + r] += 2.0 * w.V[i, r] * couple_mixed[i]
-        _spin_to_quaternion(w, q, n2, couple_mixed, H)
-    couple_stress(w, couple_modulus, geometry.metric[e, p], x, n2, kappa_mixed, mixed, tangent, g[:, 0], g_mixed, H)
+                g[Q + r, column] += 2.0 * V[i, r] * couples[column, i]
+    if tangent:
+        _spin_to_quaternion(w, n2)
+    w.energy[INTERNAL] += couple_stress(w, point.couple_metric, n2, kappa_mixed, request.mixed, tangent)
     return least
 
 
 @inline
-def _add_stress_vector(
-    g: FloatArray, i: int, z: float, phi: float, t1: float, t2: float, t3: float, d2z: float
-) -> None:
+def _clear(w: Record, tangent: bool) -> None:
+    """Put all that is summed to zero."""
+    w.couples[:, :], w.energy[:], w.g[:, :] = 0.0, 0.0, 0.0
+    if tangent:
+        w.H[:, :], w.H_gω[:, :], w.H_ωg[:, :], w.H_ωω[:, :] = 0.0, 0.0, 0.0, 0.0
+
+
+@inline
+def _add_stress_vector(w: Record, column: int, i: int, z: float, t1: float, t2: float, t3: float) -> None:
     """Chain component i of the stress vectors to the gradient with respect to (u,α  w,α  w  ā  φ)."""
-    g[U1 + i] += t1
-    g[U1 + 3 + i] += t2
-    g[W1 + i] += z * t1
-    g[W1 + 3 + i] += z * t2
-    g[W + i] += (1.0 + 2.0 * z * phi) * t3
-    g[ENHANCED + i] += t3
-    g[PHI] += d2z * t3
+    g = w.g
+    g[U1 + i, column] += t1
+    g[U1 + 3 + i, column] += t2
+    g[W1 + i, column] += z * t1
+    g[W1 + 3 + i, column] += z * t2
+    g[W + i, column] += (1.0 + 2.0 * z * w.x[PHI]) * t3
+    g[ENHANCED + i, column] += t3
+    g[PHI, column] += w.d2z[i] * t3
 
 
 @inline
 def predicted_stress(
-    material: Material,
-    geometry: SectionGeometry,
-    e: int,
-    p: int,
-    x: FloatArray,
+    w: Record,
     dx: FloatArray,
-    scratch: AnyArray,
+    point: Record,
+    levels: AnyArray,
+    laws: Laws,
     S_mixed: FloatArray,
     kappa_mixed: FloatArray,
 ) -> None:
-    """Fill S' = U⁻¹ (P + C : ΔU - ΔU S) (levels, 3, 3), κ' = κ + Δκ (2, 3), linear in the increment dx (31,) from x."""
-    w = scratch[0]
-    q, dq = x[Q : Q + 4], dx[Q : Q + 4]
+    """Fill S' = U⁻¹ (P + C : ΔU - ΔU S) (levels, 3, 3), κ' = κ + Δκ (2, 3), linear in the increment dx (31,) from w.x."""
+    x, g, t, S, C, P = w.x, w.base, w.t, w.S, w.C, w.P
+    q, dq, ω, dU, dP = x[Q : Q + 4], dx[Q : Q + 4], w.n, w.dU, w.dP
     n2 = rotation_matrix(q, w.R)
     spin_map(q, n2, w.V)
-    ω = w.vectors[0]
     for i in range(3):
         ω[i] = 2.0 * (w.V[i, 0] * dq[0] + w.V[i, 1] * dq[1] + w.V[i, 2] * dq[2] + w.V[i, 3] * dq[3])
-    dU, dP = w.K_m, w.K_ω
-    for k in range(geometry.z.size):
-        z, G = geometry.z[k], geometry.G[e, p, k]
-        base_vectors(geometry, e, p, z, x, w.g)
-        stretch(w.R, w.g, G, w.U)
-        _stress_and_tangent(material, w.U, w.P, w.C)
+    for k in range(len(levels)):
+        z, G = levels[k].z, levels[k].G
+        base_vectors(point, z, x, g)
+        stretch(w.R, g, G, w.U)
+        _stress(w, laws, levels[k].material)
         for i in range(3):
-            d = geometry.D[e, p, i] + x[W + i]
-            w.t[0, i] = dx[U1 + i] + z * dx[W1 + i]
-            w.t[1, i] = dx[U1 + 3 + i] + z * dx[W1 + 3 + i]
-            w.t[2, i] = (1.0 + 2.0 * z * x[PHI]) * dx[W + i] + 2.0 * z * dx[PHI] * d + dx[ENHANCED + i]
+            d = point.D[i] + x[W + i]
+            t[0, i] = dx[U1 + i] + z * dx[W1 + i]
+            t[1, i] = dx[U1 + 3 + i] + z * dx[W1 + 3 + i]
+            t[2, i] = (1.0 + 2.0 * z * x[PHI]) * dx[W + i] + 2.0 * z * dx[PHI] * d + dx[ENHANCED + i]
         for a in range(3):
-            w.t[a, 0] -= ω[1] * w.g[a, 2] - ω[2] * w.g[a, 1]
-            w.t[a, 1] -= ω[2] * w.g[a, 0] - ω[0] * w.g[a, 2]
-            w.t[a, 2] -= ω[0] * w.g[a, 1] - ω[1] * w.g[a, 0]
-        stretch(w.R, w.t, G, dU)
-        _second_stress(w, w.S)
+            t[a, 0] -= ω[1] * g[a, 2] - ω[2] * g[a, 1]
+            t[a, 1] -= ω[2] * g[a, 0] - ω[0] * g[a, 2]
+            t[a, 2] -= ω[0] * g[a, 1] - ω[1] * g[a, 0]
+        stretch(w.R, t, G, dU)
+        _second_stress(w, S)
         for i in range(3):
             for j in range(3):
-                value = -dU[i, 0] * w.S[0, j] - dU[i, 1] * w.S[1, j] - dU[i, 2] * w.S[2, j]
+                value = -dU[i, 0] * S[0, j] - dU[i, 1] * S[1, j] - dU[i, 2] * S[2, j]
                 for l in range(3):
                     for r in range(3):
-                        value += w.C[i, j, l, r] * dU[l, r]
+                        value += C[i, j, l, r] * dU[l, r]
                 dP[i, j] = value
         for i in range(3):
             for j in range(3):
-                w.P[i, j] += dP[i, j]
+                P[i, j] += dP[i, j]
         _second_stress(w, S_mixed[k])
     for a in range(2):
         at = Q1 + 4 * a

@@ -21,7 +21,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from magshell.arrays import FloatArray
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
 from magshell.errors import InputError, SolveError
 from magshell.linalg import SingularMatrix, make_solver, nested_dissection
 from magshell.model.model import Model
@@ -181,7 +181,7 @@ def buckling(
     for number, (value, vector) in enumerate(roots.pairs, start=1):
         load_factor, size = value * line.unit, abs(value)
         flux_density = follower.system.course.at(load_factor).flux_density
-        mode = normalised(discretisation.expand(vector))
+        mode = normalised(discretisation.direction(vector).nodal)
         found.append(
             BucklingMode(
                 number=number,

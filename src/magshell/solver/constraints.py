@@ -46,7 +46,7 @@ class Constraint(Protocol):
     """One equation for the load factor."""
 
     def d_load(self, state: State, load_factor: float, increment: FloatArray, per_load: FloatArray) -> float:
-        """Increment δt that meets it with the state moved by `increment` + δt `per_load`, both (nodes, 10).
+        """Increment δt that meets it with displacements moved by `increment` + δt `per_load`, both (nodes, 3).
 
         Raises
         ------
@@ -76,8 +76,8 @@ class Sphere(NamedTuple):
 
     def d_load(self, state: State, load_factor: float, increment: FloatArray, per_load: FloatArray) -> float:
         """See `Constraint`."""
-        away = (state.u - self.u + increment[:, :3], load_factor - self.load_factor)
-        slope = (per_load[:, :3], 1.0)
+        away = (state.u - self.u + increment, load_factor - self.load_factor)
+        slope = (per_load, 1.0)
         a, b = self.metric.product(slope, slope), self.metric.product(away, slope)
         c = self.metric.product(away, away) - self.radius**2
         side = 1.0 if self.metric.product(slope, (self.ahead, self.ahead_load)) > 0.0 else -1.0

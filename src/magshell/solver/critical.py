@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.equations.assembly import Assembly
+from magshell.equations.discretisation import Assembly
 from magshell.linalg import Factorisation, SingularMatrix
 from magshell.shell.state import State
 from magshell.solver.constraints import Metric, Sphere
@@ -140,7 +140,7 @@ class _Search:
 
     def own(self, state: State, load_factor: float) -> Trial:
         """A state with its own stresses: those that a step predicted would move the zero of an eigenvalue."""
-        return Trial(state, load_factor, self.system.discretisation.stresses_at(state))
+        return Trial(state, load_factor, self.system.discretisation.predicted(state))
 
     def turn(self) -> float | None:
         """Distance of the limit point."""
@@ -210,7 +210,7 @@ class _Search:
             direction = self.system.linear_solver.factorise(assembly.matrix).smallest_eigenpair()[1]
         except SingularMatrix as singular:
             direction = singular.null_vector
-        return normalised(self.system.discretisation.expand(direction))
+        return normalised(self.system.discretisation.direction(direction).nodal)
 
     def limit_point(self, distance: float) -> Found:
         """The limit point at a distance, with its mode."""
@@ -219,7 +219,7 @@ class _Search:
         sides = self.seen(near[0]).negative_pivots, self.seen(near[1]).negative_pivots
         point = self.point(distance)
         assert self.factors is not None
-        mode = self.system.discretisation.expand(self.factors.smallest_eigenpair()[1])
+        mode = self.system.discretisation.direction(self.factors.smallest_eigenpair()[1]).nodal
         return Found(LIMIT_POINT, point, normalised(mode), sides)
 
 

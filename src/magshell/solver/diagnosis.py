@@ -23,9 +23,11 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.equations.assembly import Discretisation
-from magshell.evaluation.points import evaluate, plane_stress_stretch
+from magshell.equations.discretisation import Discretisation
+from magshell.evaluation.converged import Converged
+from magshell.evaluation.points import evaluate
 from magshell.magnetics import law
+from magshell.magnetics.law import OMEGA
 from magshell.model.course import Loading
 from magshell.shell.state import State
 
@@ -83,9 +85,7 @@ class Measures(NamedTuple):
 
 def measure(discretisation: Discretisation, state: State, loading: Loading) -> Measures:
     """Bending per element, det F and the couple in a state."""
-    body, material = discretisation.body, discretisation.model.shell.material
-    φ = plane_stress_stretch(body, state, material) if body.plane_stress else None
-    F = evaluate(body, state, φ).F
+    F = Converged(discretisation, state, loading).fields.F
     determinants = np.linalg.det(F).min(axis=(1, 2))
     worst = int(determinants.argmin())
     return Measures(
@@ -180,11 +180,11 @@ def _angles(one: FloatArray, other: FloatArray) -> FloatArray:
 
 def _couple(discretisation: Discretisation, state: State, loading: Loading) -> Couple | None:
     """None without a micro-rotation or a field."""
-    model, body = discretisation.model, discretisation.body
+    model, reference = discretisation.model, discretisation.reference
     modulus = model.shell.material.coupling_modulus
-    if not body.layout.q or not modulus or not np.any(loading.flux_density):
+    if not reference.body.layout.q or not modulus or not np.any(loading.flux_density):
         return None
-    fields = evaluate(body, state)
+    fields = evaluate(reference, state)
     F = fields.F.mean(axis=2)
     left, stretches, right = np.linalg.svd(F)
     Q = left @ right
@@ -200,12 +200,9 @@ def _couple(discretisation: Discretisation, state: State, loading: Loading) -> C
 
 def _couples(discretisation: Discretisation, F: FloatArray, R: FloatArray, flux_density: FloatArray) -> FloatArray:
     """Couple of the field per unit volume (elements, points, 3) that the law puts on the micro-rotation, N/m²."""
-    remanence = discretisation.body.remanence
-    m, n = (np.einsum("epxy,epy->xep", by, remanence) for by in (F, R))
-    f, c = np.zeros(m.shape), np.zeros(m.shape)
-    unused = np.zeros((3, *m.shape)), np.zeros((3, *m.shape))
-    law.forces_and_tangent(discretisation.model.coupling, m, n, flux_density, f, c, *unused)
-    return np.moveaxis(-c, 0, -1)
+    remanence = discretisation.reference.remanence.mean(axis=2)
+    m, n = (np.einsum("epxy,epy->epx", by, remanence) for by in (F, R))
+    return -law.evaluate(discretisation.model.coupling, m, n, flux_density)[1][..., OMEGA : OMEGA + 3]
 
 
 def _place(discretisation: Discretisation, element: int) -> str:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from magshell.equations.instant import Increment
 from magshell.evaluation.balance import Balance, balance
 from magshell.solver.constraints import Constraint, Metric, Sphere
 from magshell.solver.critical import LIMIT_POINT, CriticalPoint, locate, passed
@@ -120,13 +121,13 @@ class Follower:
     def _first(self, start: Start, goal: Goal) -> tuple[Point, Solution]:
         """The first point of a stage, and its state as a solution."""
         state = start.state
-        trial = Trial(state, 0.0, self.discretisation.stresses_at(state))
+        trial = Trial(state, 0.0, self.discretisation.predicted(state))
         solution = Solution(trial, self.system.assemble(trial), [0.0], None, None)
         along: Direction = np.zeros_like(state.u), 1.0
         point = point_at(self.system, self.metric, solution, None, start.arc_length, along)
         if start.mode is not None:
             length = self.metric.norm(start.mode[:, :3], 0.0)
-            slope = Slope(start.mode / length, np.zeros_like(state.alpha), 0.0)
+            slope = Slope(Increment(start.mode / length, np.zeros_like(state.alpha)), 0.0)
             return point._replace(slope=slope, negative_pivots=None), solution
         if isinstance(goal, ProbeGoal) and goal.slope(point.slope) * (goal.wanted - goal.value(point)) < 0.0:
             return point._replace(slope=point.slope.reversed), solution
@@ -134,8 +135,8 @@ class Follower:
 
     def _point(self, waypoint: Waypoint) -> Point:
         step = waypoint.step
-        stresses = self.discretisation.stresses_at(step.state)
-        return Point(step.arc_length, step.load_factor, step.state, waypoint.slope, stresses, step.negative_pivots)
+        prediction = self.discretisation.predicted(step.state)
+        return Point(step.arc_length, step.load_factor, step.state, waypoint.slope, prediction, step.negative_pivots)
 
     def _head_for(self, goal: int) -> None:
         """Make a goal of the stage the next one."""

@@ -82,7 +82,7 @@ class ProbeGoal(NamedTuple):
 
     def slope(self, slope: Slope) -> float:
         """Of the displacement."""
-        return float(slope.increment[self.node, self.column])
+        return float(slope.increment.u[self.node, self.column])
 
     def hold(self, trial: Trial) -> ProbeValue:
         """The displacement that the trial has."""

@@ -25,23 +25,23 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from magshell.equations.assembly import InvertedElement
-from magshell.evaluation.points import evaluate, micropolar_stretch, plane_stress_stretch
+from magshell.equations.instant import Instant, Prediction, combined, moved
+from magshell.equations.term import InvertedElement
+from magshell.evaluation.points import evaluate, micropolar_stretch, of_materials, plane_stress_stretch
 from magshell.linalg import Factorisation
 from magshell.linalg.factorisation import scaled
-from magshell.materials.law import Material, strain_energy
 from magshell.model.course import Loading
-from magshell.shell.loops import Body, Stresses
+from magshell.shell.loops import Stresses
 from magshell.shell.state import State
-from magshell.solver.newton import StepFailure, System, Trial, factorise
+from magshell.solver.newton import StepFailure, System, factorise
 
 # Strain or rotation at s = 1, and the most that the scaled tangent may change up to there.
 UNIT, CHANGE = 0.02, 0.1
 # Strain or rotation at s = 1 that is round-off, and up to which the linear path is followed.
 MOTIONLESS, REACH = 1e-9, 0.1
 PASSES = 20
-# Real and imaginary steps for the stresses of shells in plane stress.
-STEP, IMAGINARY = 0.05, 1e-30
+# Step for the stresses of shells in plane stress.
+STEP = 0.05
 
 
 class LinearPath:
@@ -62,18 +62,18 @@ class LinearPath:
     def __init__(self, system: System, state: State) -> None:
         self.system, self.state = system, state
         discretisation = system.discretisation
-        trial = Trial(state, 0.0, discretisation.stresses_at(state))
-        self._assembly = discretisation.assemble(state, system.course.at(0.0), trial.stresses)
+        self._start = Instant(state, system.course.at(0.0), discretisation.predicted(state))
+        self._assembly = discretisation.assemble(self._start)
         factors = factorise(system, self._assembly)
         self.unit = 1.0
         for _ in range(2):  # twice: in a unit that suits the load, no digits are lost beside forces that are there
-            self._advance(factors, trial.stresses)
+            self._advance(factors)
             self.strain, self.rotation = self._motion()
             if self.motion > 0.0:
                 self.unit *= UNIT / self.motion
-        self._advance(factors, trial.stresses)
+        self._advance(factors)
         self.strain, self.rotation = self._motion()
-        self._stresses, self._stress_rate = self._along(trial.stresses)
+        self._stresses, self._stress_rate = self._along()
         self._fit()
 
     @property
@@ -94,53 +94,49 @@ class LinearPath:
         StepFailure
             An element is turned inside out there.
         """
-        stresses = Stresses(*(now + s * rate for now, rate in zip(self._stresses, self._stress_rate, strict=True)))
-        moved = self.state.moved(s * self._increment, s * self._d_alpha)
+        stresses = combined([1.0, s], [self._stresses, self._stress_rate])
+        instant = Instant(moved(self.state, s * self._increment), self.system.course.at(s * self.unit), stresses)
         try:
-            loading = self.system.course.at(s * self.unit)
-            matrix = self.system.discretisation.assemble(moved, loading, stresses, mixed=True).matrix
+            matrix = self.system.discretisation.assemble(instant).matrix
         except InvertedElement as inverted:
             raise StepFailure(f"element {inverted.element} is turned inside out on the linear path") from None
         assert matrix is not None
         return matrix.copy()
 
-    def _advance(self, factors: Factorisation, stresses: Stresses) -> None:
+    def _advance(self, factors: Factorisation) -> None:
         """The increment at s = 1."""
         discretisation, course = self.system.discretisation, self.system.course
         rate = Loading(*(self.unit * one for one in course.rate(0.0)))
-        direction = discretisation.load_direction(self.state, course.at(0.0), rate, stresses, self._assembly)
-        solution = factors.solve(direction)
-        self._increment = discretisation.expand(solution, discretisation.imposed(rate.held))
-        self._d_alpha = discretisation.recover(self._increment) - discretisation.recover(np.zeros_like(self._increment))
+        direction = discretisation.load_direction(self._start, rate, self._assembly)
+        self._increment = discretisation.direction(factors.solve(direction), discretisation.imposed(rate.held))
 
     def _motion(self) -> tuple[float, float]:
         """Largest strain and rotation of t F' F0⁻¹ at s = 1. (F is quadratic in s, so that the difference is exact.)"""
-        body, state = self.system.discretisation.body, self.state
-        ahead, back = (
-            evaluate(body, state.moved(side * self._increment, side * self._d_alpha)).F for side in (1.0, -1.0)
-        )
-        gradient = 0.5 * (ahead - back) @ np.linalg.inv(evaluate(body, state).F)
+        reference, state = self.system.discretisation.reference, self.state
+        ahead, back = (evaluate(reference, moved(state, side * self._increment)).F for side in (1.0, -1.0))
+        gradient = 0.5 * (ahead - back) @ np.linalg.inv(evaluate(reference, state).F)
         turned = np.swapaxes(gradient, -1, -2)
         strain, spin = 0.5 * (gradient + turned), 0.5 * (gradient - turned)
         return float(np.linalg.norm(strain, 2, (-2, -1)).max()), float(np.linalg.norm(spin, 2, (-2, -1)).max())
 
-    def _along(self, stresses: Stresses) -> tuple[Stresses, Stresses]:
+    def _along(self) -> tuple[Prediction, Prediction]:
         """Stresses of the state, and what they grow by up to s = 1."""
-        discretisation, state, increment, d_alpha = (
-            self.system.discretisation,
-            self.state,
-            self._increment,
-            self._d_alpha,
-        )
-        if not discretisation.body.plane_stress:
-            ahead = discretisation.predicted_stresses(state, increment, d_alpha)
-            return stresses, Stresses(*(one - now for one, now in zip(ahead, stresses, strict=True)))
-        body, material = discretisation.body, discretisation.model.shell.material
-        back, now, ahead = (
-            _plane_stresses(body, state.moved(step * increment, step * d_alpha), material)
-            for step in (-STEP, 0.0, STEP)
-        )
-        return now, Stresses(*((two - one) / (2.0 * STEP) for one, two in zip(back, ahead, strict=True)))
+        discretisation, state, increment = self.system.discretisation, self.state, self._increment
+        if discretisation.reference.body.plane_stress:
+            steps = (-STEP, 0.0, STEP)
+            back, now, ahead = (self._plane_stresses(moved(state, step * increment)) for step in steps)
+            return now, combined([0.5 / STEP, -0.5 / STEP], [ahead, back])
+        now = discretisation.predicted(state)
+        return now, combined([1.0, -1.0], [discretisation.predicted(state, increment), now])
+
+    def _plane_stresses(self, state: State) -> Prediction:
+        """Stresses S = U⁻¹ P with the stretch φ that plane stress makes."""
+        discretisation = self.system.discretisation
+        reference, materials = discretisation.reference, discretisation.materials
+        fields = evaluate(reference, state, plane_stress_stretch(reference, state, materials))
+        U = micropolar_stretch(fields)
+        _, P, _ = of_materials(reference, materials, U)
+        return Stresses(np.linalg.solve(U, P), np.ascontiguousarray(fields.kappa))
 
     def _fit(self) -> None:
         """Make the unit one over which the loads change the tangent little, but not only by round-off."""
@@ -159,18 +155,5 @@ class LinearPath:
 
     def _stretch(self, factor: float) -> None:
         self.unit, self.strain, self.rotation = factor * self.unit, factor * self.strain, factor * self.rotation
-        self._increment, self._d_alpha = factor * self._increment, factor * self._d_alpha
-        self._stress_rate = Stresses(*(factor * rate for rate in self._stress_rate))
-
-
-def _plane_stresses(body: Body, state: State, material: Material) -> Stresses:
-    """Stresses S = U⁻¹ P with the stretch φ that plane stress makes, P by a complex step."""
-    fields = evaluate(body, state, plane_stress_stretch(body, state, material))
-    U = micropolar_stretch(fields)
-    P = np.empty_like(U)
-    for i, j in np.ndindex(3, 3):
-        moved = U.astype(complex)
-        moved[i, j] += 1j * IMAGINARY
-        P[i, j] = strain_energy(material, moved).imag / IMAGINARY
-    U, P = (np.moveaxis(tensor, (0, 1), (-2, -1)) for tensor in (U, P))
-    return Stresses(np.ascontiguousarray(np.linalg.solve(U, P)), np.ascontiguousarray(fields.kappa))
+        self._increment = factor * self._increment
+        self._stress_rate = combined([factor], [self._stress_rate])

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse as sp
 
-from magshell.equations.numbering import columns_of
+from magshell.equations.numbering import columns_of, graph_of
 from magshell.linalg import nested_dissection
 from magshell.linalg.multifrontal.fronts import fronts_of
 from magshell.model.model import Model
@@ -44,10 +44,8 @@ class Need(NamedTuple):
 def need_of(model: Model, linear_solver: str = "multifrontal") -> Need:
     """What a solve of a model will take."""
     mesh, nodes = model.shell.mesh, len(model.shell.mesh.points)
-    elements, corners = mesh.elements.shape
-    starts = np.arange(0, elements * corners + 1, corners)
-    incidence = sp.csr_array((np.ones(elements * corners), mesh.elements.ravel(), starts), shape=(elements, nodes))
-    graph = sp.csr_array(incidence.T @ incidence)
+    elements = len(mesh.elements)
+    graph = graph_of([mesh.elements], nodes)
     order = nested_dissection(graph)
     unknowns = (columns_of(model.shell.carriers) & ~model.constraints.fixed).sum(axis=1)
     order = order[unknowns[order] > 0]

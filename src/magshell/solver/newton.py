@@ -13,11 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from magshell.arrays import FloatArray
-from magshell.equations.assembly import Assembly, Discretisation, InvertedElement
+from magshell.equations.discretisation import Assembly, Discretisation
+from magshell.equations.instant import Increment, Instant, Prediction, moved
+from magshell.equations.term import InvertedElement
 from magshell.linalg import Factorisation, LinearSolver, SingularMatrix
 from magshell.model.course import Course
-from magshell.shell.loops import Stresses
 from magshell.shell.state import State
 from magshell.solver.constraints import Constraint, NoRoot
 from magshell.solver.settings import Settings
@@ -38,11 +38,11 @@ class StepFailure(ArithmeticError):
 
 
 class Trial(NamedTuple):
-    """Where an iteration is: state, load factor, stresses of the geometric part."""
+    """Where an iteration is: state, load factor, and what the mixed tangent takes of the state."""
 
     state: State
     load_factor: float
-    stresses: Stresses
+    prediction: Prediction
 
 
 class Solution(NamedTuple):
@@ -54,7 +54,7 @@ class Solution(NamedTuple):
     assembly : Assembly
     residuals : list of float
         The worst relative one before each iteration and at the end.
-    increment : ndarray or None, shape (nodes, 10)
+    increment : Increment or None
         The last one: this far from the state is that of the tangent which was factorised.
     factors : Factorisation or None
         Of that tangent; None: none was needed.
@@ -63,7 +63,7 @@ class Solution(NamedTuple):
     trial: Trial
     assembly: Assembly
     residuals: list[float]
-    increment: FloatArray | None
+    increment: Increment | None
     factors: Factorisation | None
 
     @property
@@ -80,20 +80,20 @@ class System(NamedTuple):
     course: Course
     settings: Settings
 
+    def instant(self, trial: Trial) -> Instant:
+        """What the equations are evaluated at."""
+        prediction = trial.prediction if self.settings.mixed_tangent else None
+        return Instant(trial.state, self.course.at(trial.load_factor), prediction)
+
     def assemble(self, trial: Trial) -> Assembly:
         """Residual and tangent."""
-        return self.discretisation.assemble(
-            trial.state, self.course.at(trial.load_factor), trial.stresses if self.settings.mixed_tangent else None
-        )
+        return self.discretisation.assemble(self.instant(trial))
 
-    def per_load(self, trial: Trial, assembly: Assembly, factors: Factorisation) -> FloatArray:
-        """Increment (nodes, 10) per load factor, by the factors of a tangent."""
+    def per_load(self, trial: Trial, assembly: Assembly, factors: Factorisation) -> Increment:
+        """Increment per load factor, by the factors of a tangent."""
         discretisation, rate = self.discretisation, self.course.rate(trial.load_factor)
-        stresses = trial.stresses if self.settings.mixed_tangent else None
-        direction = discretisation.load_direction(
-            trial.state, self.course.at(trial.load_factor), rate, stresses, assembly
-        )
-        return discretisation.expand(factors.solve(direction), discretisation.imposed(rate.held))
+        direction = discretisation.load_direction(self.instant(trial), rate, assembly)
+        return discretisation.direction(factors.solve(direction), discretisation.imposed(rate.held))
 
 
 def newton(
@@ -111,7 +111,7 @@ def newton(
     """
     discretisation, settings = system.discretisation, system.settings
     residuals: list[float] = []
-    increment: FloatArray | None = None
+    increment: Increment | None = None
     factors: Factorisation | None = None
     try:
         assembly = system.assemble(trial)
@@ -133,25 +133,24 @@ def newton(
             raise StepFailure(f"the iteration diverges (residual of {kind}: {residual:.1e})")
         factors = None  # two sets of factors at a time would be twice the memory
         factors = factorise(system, assembly)
-        increment = discretisation.expand(factors.solve(assembly.right_side))
+        increment = discretisation.correction(factors.solve(assembly.right_side))
         d_load = 0.0
         if constraint is not None:
             per_load = system.per_load(trial, assembly, factors)
             try:
-                d_load = constraint.d_load(trial.state, trial.load_factor, increment, per_load)
+                d_load = constraint.d_load(trial.state, trial.load_factor, increment.u, per_load.u)
             except NoRoot as miss:
                 raise StepFailure(str(miss)) from None
             increment = increment + d_load * per_load
-        if _size(discretisation, increment).max() > ABSURD:
+        if discretisation.largest(increment)[0] > ABSURD:
             raise StepFailure(_free_direction(discretisation, increment))
-        d_alpha = discretisation.recover(increment)
         start = trial
         for halving in range(HALVINGS + 1):
             size = 0.5**halving
             trial = Trial(
-                start.state.moved(size * increment, size * d_alpha),
+                moved(start.state, size * increment),
                 start.load_factor + size * d_load,
-                discretisation.predicted_stresses(start.state, size * increment, size * d_alpha),
+                discretisation.predicted(start.state, size * increment),
             )
             try:
                 assembly = system.assemble(trial)
@@ -178,7 +177,7 @@ def factorise(system: System, assembly: Assembly) -> Factorisation:
     try:
         return system.linear_solver.factorise(assembly.matrix)
     except SingularMatrix as singular:
-        direction = system.discretisation.expand(singular.null_vector)
+        direction = system.discretisation.direction(singular.null_vector)
         raise StepFailure(_free_direction(system.discretisation, direction)) from None
 
 
@@ -189,15 +188,5 @@ def _inverted(inverted: InvertedElement) -> StepFailure:
     return StepFailure(f"element {element} is turned inside out (det F = {determinant:.2g})", element)
 
 
-def _size(discretisation: Discretisation, increment: FloatArray) -> FloatArray:
-    """Magnitudes (nodes, 10) of an increment in body lengths, directors, thickness ratios and radians."""
-    thickness = discretisation.model.shell.thickness
-    units = np.array([discretisation.mesh.size] * 3 + [1.0] * 3 + [1.0 / thickness] + [1.0] * 3)
-    return np.abs(increment) / units
-
-
-def _free_direction(discretisation: Discretisation, direction: FloatArray) -> str:
-    node, column = np.unravel_index(np.argmax(_size(discretisation, direction)), direction.shape)
-    name = ("u1", "u2", "u3", "w1", "w2", "w3", "phi", "omega1", "omega2", "omega3")[column]
-    position = ", ".join(f"{1e3 * x:.4g}" for x in discretisation.mesh.points[node])
-    return f"the tangent is singular; the free direction is largest in {name} of node {node} at ({position}) mm"
+def _free_direction(discretisation: Discretisation, direction: Increment) -> str:
+    return f"the tangent is singular; the free direction is largest in {discretisation.largest(direction)[1]}"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
 from magshell.errors import InputError, suggest
 from magshell.evaluation.balance import Balance, largest_imbalances
 from magshell.model.course import Course, Loading

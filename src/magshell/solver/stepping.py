@@ -6,7 +6,7 @@ import logging
 import time
 from collections.abc import Sequence
 
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
 from magshell.errors import SolveError
 from magshell.linalg import make_solver, nested_dissection
 from magshell.model.model import Model

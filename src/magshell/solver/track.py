@@ -13,10 +13,10 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
+from magshell.equations.instant import Increment, Prediction, combined, difference, moved
 from magshell.linalg import Factorisation
 from magshell.model.course import Course
-from magshell.shell.loops import Stresses
 from magshell.shell.state import State
 from magshell.solver.constraints import Metric
 from magshell.solver.newton import Solution, StepFailure, System, Trial, factorise
@@ -31,21 +31,20 @@ Direction: TypeAlias = tuple[FloatArray, float]
 
 
 class Slope(NamedTuple):
-    """Derivative of the path with respect to its arc length: nodal increment (nodes, 10), Δα, load factor."""
+    """Derivative of the path with respect to its arc length: of the unknowns and of the load factor."""
 
-    increment: FloatArray
-    d_alpha: FloatArray
+    increment: Increment
     load: float
 
     @property
     def direction(self) -> Direction:
         """Displacements (nodes, 3) and load factor."""
-        return self.increment[:, :3], self.load
+        return self.increment.u, self.load
 
     @property
     def reversed(self) -> Slope:
         """The other way along the path."""
-        return Slope(-self.increment, -self.d_alpha, -self.load)
+        return Slope(-self.increment, -self.load)
 
 
 class Point(NamedTuple):
@@ -56,8 +55,8 @@ class Point(NamedTuple):
     arc_length, load_factor : float
     state : State
     slope : Slope
-    stresses : Stresses
-        Of that state, for the geometric part of tangents nearby.
+    prediction : Prediction
+        Of that state, for mixed tangents nearby.
     negative_pivots : int or None
         Of the tangent; None where the linear solver cannot tell.
     """
@@ -66,7 +65,7 @@ class Point(NamedTuple):
     load_factor: float
     state: State
     slope: Slope
-    stresses: Stresses
+    prediction: Prediction
     negative_pivots: int | None
 
 
@@ -99,34 +98,24 @@ def trial_at(
     """Trial state this far ahead of the last point; supports are put where its load factor, or the given one, wants."""
     last = track[-1]
     on_slope, shares = _weights(track, distance)
-    increment, d_alpha = on_slope * last.slope.increment, on_slope * last.slope.d_alpha
+    increment = on_slope * last.slope.increment
     for share, point in zip(shares, track[-3:-1], strict=True):
-        to_point, alpha_to_point = point.state.increment_from(last.state)
-        increment, d_alpha = increment + share * to_point, d_alpha + share * alpha_to_point
+        increment = increment + share * difference(point.state, last.state)
     if load_factor is None:
         load_factor = value_at(track, [point.load_factor for point in track[-3:]], last.slope.load, distance)
     held = course.amounts(load_factor).held - course.amounts(last.load_factor).held
     increment = discretisation.with_imposed(increment, held)
-    return Trial(
-        last.state.moved(increment, d_alpha), load_factor, _stresses_ahead(discretisation, track, on_slope, shares)
-    )
+    return Trial(moved(last.state, increment), load_factor, _predicted_ahead(discretisation, track, on_slope, shares))
 
 
-def _stresses_ahead(
+def _predicted_ahead(
     discretisation: Discretisation, track: Sequence[Point], on_slope: float, shares: Sequence[float]
-) -> Stresses:
+) -> Prediction:
     """By the same polynomial. (Those of the trial state itself have large membrane parts that the path has not.)"""
     last = track[-1]
-    sloping = discretisation.predicted_stresses(last.state, last.slope.increment, last.slope.d_alpha)
-    points = [point.stresses for point in track[-3:-1]]
-    return Stresses(
-        *(
-            own
-            + on_slope * (slope - own)
-            + sum(share * (other - own) for share, other in zip(shares, others, strict=True))
-            for own, slope, *others in zip(last.stresses, sloping, *points, strict=True)
-        )
-    )
+    sloping = discretisation.predicted(last.state, last.slope.increment)
+    points = [point.prediction for point in track[-3:-1]]
+    return combined([1.0 - on_slope - sum(shares), on_slope, *shares], [last.prediction, sloping, *points])
 
 
 def value_at(track: Sequence[Point], values: Sequence[float], slope: float, distance: float) -> float:
@@ -150,7 +139,7 @@ def crossing(
 
 def close_factors(metric: Metric, solution: Solution, along: Direction) -> Factorisation | None:
     """Those of the last iteration, where the last increment was small beside a direction."""
-    last = np.inf if solution.increment is None else metric.norm(solution.increment[:, :3], 0.0)
+    last = np.inf if solution.increment is None else metric.norm(solution.increment.u, 0.0)
     return solution.factors if last <= CLOSE * metric.norm(*along) else None
 
 
@@ -174,14 +163,13 @@ def point_at(
     factors = factorise(system, solution.assembly) if factors is None else factors
     trial, discretisation = solution.trial, system.discretisation
     per_load = system.per_load(trial, solution.assembly, factors)
-    d_alpha = discretisation.recover(per_load) - discretisation.recover(np.zeros_like(per_load))
-    length = metric.norm(per_load[:, :3], 1.0)
+    length = metric.norm(per_load.u, 1.0)
     if not np.isfinite(length):
         raise StepFailure("the tangent is singular at the converged state")
-    side = -1.0 if metric.product((per_load[:, :3], 1.0), along) < 0.0 else 1.0
-    slope = Slope(side / length * per_load, side / length * d_alpha, side / length)
-    stresses = discretisation.stresses_at(trial.state)
-    return Point(arc_length, trial.load_factor, trial.state, slope, stresses, factors.negative_pivots())
+    side = -1.0 if metric.product((per_load.u, 1.0), along) < 0.0 else 1.0
+    slope = Slope(side / length * per_load, side / length)
+    prediction = discretisation.predicted(trial.state)
+    return Point(arc_length, trial.load_factor, trial.state, slope, prediction, factors.negative_pivots())
 
 
 def arc(metric: Metric, chord: Direction, first: Slope, second: Slope) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
 from magshell.linalg import SOLVERS, nested_dissection
 from magshell.model.model import Model
 from magshell.solver.critical import CriticalPoint

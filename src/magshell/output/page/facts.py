@@ -29,7 +29,7 @@ def facts(path: Path, shown: Sequence[Step]) -> Facts:
     words = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(material).__name__).lower()
     for people, proper in PEOPLE.items():
         words = words.replace(people, proper)
-    remanence = float(np.linalg.norm(path.discretisation.body.remanence, axis=-1).max())
+    remanence = float(np.linalg.norm(path.discretisation.reference.remanence, axis=-1).max())
     lines = [
         ("material", f"{words}, shear modulus {show(material.shear_modulus, STRESS)}"),
         ("thickness", show(shell.thickness, LENGTH)),

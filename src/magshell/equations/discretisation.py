@@ -1,0 +1,217 @@
+"""From the model to equations: the sum of their terms, as the solver sees it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import scipy.sparse as sp
+
+from magshell.arrays import FloatArray
+from magshell.equations.frames import to_frames, to_global
+from magshell.equations.insertion import Insertion
+from magshell.equations.instant import STATIC, Increment, Instant, Prediction
+from magshell.equations.loads import LoadTerm
+from magshell.equations.numbering import Numbering, Ordering, columns_of
+from magshell.equations.shell import ShellTerm
+from magshell.equations.term import Term
+from magshell.model.course import Loading
+from magshell.model.model import Model
+from magshell.model.reference import reference_of_model, stiffest_of
+from magshell.openblas import allocate_buffers
+from magshell.shell.state import State
+from magshell.shell.unknowns import COLUMNS, COMPONENTS, UNKNOWNS
+
+KINDS = (*COLUMNS, "alpha")
+
+
+class Assembly(NamedTuple):
+    """Residual and tangent at an instant.
+
+    Attributes
+    ----------
+    matrix : csc_array or None
+        Condensed tangent of the free unknowns; the next assembly overwrites its values.
+    right_side : ndarray, shape (dofs,)
+        Minus the condensed residual and the imposed increments' share.
+    residual : ndarray, shape (nodes, 10)
+        Internal minus external forces in the nodes' frames; at held components the reactions.
+    relative : dict of str to float
+        Residual by kind of unknown over the elements' internal and magnetic forces and the loads of that kind.
+    """
+
+    matrix: sp.csc_array | None
+    right_side: FloatArray
+    residual: FloatArray
+    relative: dict[str, float]
+
+    @property
+    def worst(self) -> tuple[str, float]:
+        """Kind with the largest relative residual, and that."""
+        return max(self.relative.items(), key=lambda item: item[1])
+
+
+class Discretisation:
+    """The model's equations, a sum of terms.
+
+    Parameters
+    ----------
+    model : Model
+    ordering : callable
+        From the node graph (nodes, nodes) to the nodes' elimination order.
+
+    Attributes
+    ----------
+    model : Model
+    mesh : Mesh
+    dofs : int
+        Free unknowns.
+    shell : ShellTerm
+    loads : LoadTerm
+    terms : sequence of Term
+        Both.
+    reference : Reference
+        Arrays of the undeformed shell.
+    materials : list of Material
+        Of the regions of the shell.
+    carried, free : ndarray of bool, shape (nodes, 10)
+        Which unknowns there are, and which of them no support holds.
+    """
+
+    def __init__(self, model: Model, ordering: Ordering) -> None:
+        allocate_buffers()
+        self.model, self.mesh = model, model.shell.mesh
+        self.reference = reference_of_model(model)
+        self.shell = ShellTerm(self.reference, len(self.mesh.points), stiffest_of(model))
+        self.loads = LoadTerm(model.applied, model.constraints)
+        self.terms: Sequence[Term] = (self.shell, self.loads)
+        self.materials = [region.material for region in model.shell.regions]
+        self.carried = columns_of(model.shell.carriers)
+        self.free = self.carried & ~model.constraints.fixed
+        cliques = [clique for term in self.terms for clique in term.couplings()]
+        self.numbering = Numbering(self.free, cliques, ordering)
+        self.dofs = self.numbering.dofs
+        self._insertion = Insertion(self.numbering, model.constraints)
+        self.shell.place(self.numbering, model.constraints)
+        self.loads.place(self._insertion)
+        self._noise = sum(term.noise() for term in self.terms)
+
+    @property
+    def normals(self) -> FloatArray:
+        """Unit normals (nodes, 3) of the undeformed mid-surface."""
+        return self.model.normals
+
+    def undeformed(self) -> State:
+        """State of no deformation."""
+        return State.undeformed(len(self.mesh.points), len(self.mesh.elements), self.reference.body.layout.modes)
+
+    def assemble(self, instant: Instant, imposed: FloatArray | None = None, tangent: bool = True) -> Assembly:
+        """Residual and tangent at an instant.
+
+        Parameters
+        ----------
+        instant : Instant
+            Field and loads are those of its loading; what is held is the state's.
+        imposed : ndarray, shape (nodes, 10), optional
+            Increments of held components, in the nodes' frames, that the right side accounts for.
+        tangent : bool
+            Without it only the residual is made.
+
+        Raises
+        ------
+        InvertedElement
+            det F is not positive at a point of an element.
+        """
+        insertion = self._insertion if tangent else None
+        if insertion is not None:
+            insertion.data[:] = 0.0
+        parts = [term.evaluate(instant, STATIC, insertion, imposed) for term in self.terms]
+        residual = sum(part.residual for part in parts)
+        right_side = np.zeros(self.dofs)
+        if tangent:
+            condensed = sum(part.condensed for part in parts)
+            right_side[self.numbering.equations] = -condensed[self.free]
+        squares = sum(part.scale for part in parts)
+        inner = sum(part.inner for part in parts)
+        matrix = self._insertion.matrix if tangent else None
+        return Assembly(matrix, right_side, residual, self._relative(residual, squares, inner))
+
+    def load_direction(self, instant: Instant, rate: Loading, assembly: Assembly) -> FloatArray:
+        """Right side (dofs,) of the tangent for the increment of the unknowns per load factor.
+
+        `rate` is the derivative of the loading with respect to the load factor, `assembly` that of the instant with
+        nothing imposed.
+        """
+        direction = np.zeros(self.dofs)
+        change = sum(term.load_rate(instant, rate) for term in self.terms)
+        direction[self.numbering.equations] = -change[self.free]
+        if np.any(rate.held):
+            moving = self.assemble(instant, self.imposed(rate.held)).right_side
+            direction += moving - assembly.right_side
+        return direction
+
+    def predicted(self, state: State, increment: Increment | None = None) -> Prediction:
+        """What the mixed tangent takes of a state after an increment, linear in it; by default of the state itself."""
+        if increment is None:
+            increment = Increment(np.zeros((len(self.mesh.points), COMPONENTS)), np.zeros_like(state.alpha))
+        return self.shell.predict(state, increment)
+
+    def correction(self, solution: FloatArray) -> Increment:
+        """Increment of all unknowns that a solution (dofs,) of the last tangent makes with its right side."""
+        nodal = self._expanded(solution, None)
+        return Increment(nodal, self.shell.recovered(nodal, whole=True))
+
+    def direction(self, solution: FloatArray, imposed: FloatArray | None = None) -> Increment:
+        """Increment of all unknowns along a solution (dofs,) for another right side, and imposed components."""
+        nodal = self._expanded(solution, imposed)
+        return Increment(nodal, self.shell.recovered(nodal, whole=False))
+
+    def _expanded(self, solution: FloatArray, imposed: FloatArray | None) -> FloatArray:
+        nodal = np.zeros((len(self.mesh.points), COMPONENTS)) if imposed is None else imposed.copy()
+        nodal[self.free] = solution[self.numbering.equations]
+        return self.to_global(nodal)
+
+    def to_global(self, nodal: FloatArray) -> FloatArray:
+        """Turn nodal columns (nodes, 10) from the nodes' frames to the global axes."""
+        return to_global(self.model.constraints, nodal)
+
+    def to_frames(self, nodal: FloatArray) -> FloatArray:
+        """Turn nodal columns (nodes, 10) from the global axes to the nodes' frames."""
+        return to_frames(self.model.constraints, nodal)
+
+    def imposed(self, held: FloatArray) -> FloatArray:
+        """What is held of nodal values (nodes, 10) in the nodes' frames; zero elsewhere."""
+        return np.where(self.model.constraints.fixed, held, 0.0)
+
+    def with_imposed(self, increment: Increment, held: FloatArray) -> Increment:
+        """An increment whose held components are put to values (nodes, 10) in the nodes' frames."""
+        fixed = self.model.constraints.fixed
+        return Increment(self.to_global(np.where(fixed, held, self.to_frames(increment.nodal))), increment.alpha)
+
+    def largest(self, increment: Increment) -> tuple[float, str]:
+        """Largest magnitude in an increment, in body lengths, directors, thickness ratios and radians, and where."""
+        units = np.array([self._unit(column) for column in range(COMPONENTS)])
+        magnitudes = np.abs(increment.nodal) / units
+        node, column = np.unravel_index(np.argmax(magnitudes), magnitudes.shape)
+        position = ", ".join(f"{1e3 * x:.4g}" for x in self.mesh.points[node])
+        return float(magnitudes[node, column]), f"{UNKNOWNS[column]} of node {node} at ({position}) mm"
+
+    def _unit(self, column: int) -> float:
+        if column < COLUMNS["u"].stop:
+            return self.mesh.size
+        return 1.0 / self.model.shell.thickness if column == COLUMNS["phi"].start else 1.0
+
+    def _relative(self, residual: FloatArray, squares: FloatArray, inner: float) -> dict[str, float]:
+        """Norms by kind above their round-off, over the elements' forces and the loads of that kind.
+
+        α has the unit of w (both work on directors) and is measured against the same forces. The forces of u vanish in
+        pure bending; they count for no less than the moments over the body's size.
+        """
+        free = np.where(self.free, residual, 0.0)
+        norms = np.sqrt([*(np.vdot(free[:, columns], free[:, columns]) for columns in COLUMNS.values()), inner**2])
+        scales = np.sqrt(squares)
+        scales[0] = max(scales[0], scales[1] / self.mesh.size, scales[3] / self.mesh.size)
+        above = np.maximum(norms - self._noise, 0.0)
+        relative = np.divide(above, scales[[0, 1, 2, 3, 1]], out=above.copy(), where=above > 0.0)
+        return dict(zip(KINDS, relative.tolist(), strict=True))

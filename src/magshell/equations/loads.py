@@ -1,0 +1,100 @@
+"""The loads as a term of the equations."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from magshell.arrays import FloatArray, IntArray
+from magshell.equations.frames import to_frames
+from magshell.equations.insertion import Insertion
+from magshell.equations.instant import Increment, Instant, Prediction, Weights
+from magshell.equations.term import Contribution
+from magshell.model.course import Loading
+from magshell.model.loads import Applied, Pairs
+from magshell.model.loads.cross import cross_matrix
+from magshell.model.supports import Constraints
+from magshell.shell.state import State
+from magshell.shell.unknowns import COLUMNS, COMPONENTS
+
+
+class LoadTerm:
+    """Minus the forces of the loads of a model.
+
+    Parameters
+    ----------
+    applied : sequence of Applied
+    constraints : Constraints
+    """
+
+    def __init__(self, applied: Sequence[Applied], constraints: Constraints) -> None:
+        self._applied, self._constraints = applied, constraints
+        self._pairs = [one.pairs for one in applied]
+
+    def place(self, insertion: Insertion) -> None:
+        """Tell the term where its blocks go."""
+        self._at = [None if pairs is None else insertion.blocks(pairs) for pairs in self._pairs]
+        free = insertion.numbering.number >= 0
+        undeformed = State.undeformed(len(free), 0, 0)
+        carrying = np.zeros(len(free), dtype=bool)
+        for one in self._applied:
+            carrying |= np.any(one.forces(undeformed)[:, COLUMNS["omega"]], axis=1)
+        nodes = np.flatnonzero(carrying & np.all(free[:, COLUMNS["omega"]], axis=1))
+        self._couples = Pairs("omega", "omega", nodes, nodes)
+        self._couples_at = insertion.blocks(self._couples)
+
+    def couplings(self) -> Sequence[IntArray]:
+        """See `Term`."""
+        return [np.column_stack([pairs.rows, pairs.columns]) for pairs in self._pairs if pairs is not None]
+
+    def forces(self, state: State, amplitudes: FloatArray) -> FloatArray:
+        """Sum of the loads (nodes, 10), global axes: N on u, N m on directors and spins."""
+        total = np.zeros((len(state.u), COMPONENTS))
+        for amplitude, one in zip(amplitudes, self._applied, strict=True):
+            if amplitude:
+                total += amplitude * one.forces(state)
+        return total
+
+    def evaluate(
+        self, instant: Instant, weights: Weights, insertion: Insertion | None, imposed: FloatArray | None
+    ) -> Contribution:
+        """See `Term`."""
+        forces = self.forces(instant.state, instant.loading.loads)
+        if insertion is not None and self._applied:
+            self._insert(instant, weights, insertion, forces)
+        residual = -to_frames(self._constraints, forces)
+        scale = np.array([np.sum(residual[:, columns] ** 2) for columns in COLUMNS.values()])
+        return Contribution(residual, residual, scale, 0.0)
+
+    def _insert(self, instant: Instant, weights: Weights, insertion: Insertion, forces: FloatArray) -> None:
+        """Add minus the derivative of the forces, and a transport of the couples.
+
+        Elements differentiate in the chart exp(ϑ) R̃, in which a couple c on the spins of the new state is
+        c + c × ϑ / 2: so K = K_chart - [c]×/2, with the sum c of the couples of a node's elements. In equilibrium c is
+        the loads' couple where no rotation is held. Where exactly one is, the loops over elements have all of c, loads
+        and reaction; where more are, [c]× does not meet two free rotations.
+        """
+        loads = zip(instant.loading.loads, self._applied, self._pairs, self._at, strict=True)
+        for amplitude, one, pairs, at in loads:
+            if amplitude and at is not None and pairs is not None:
+                insertion.add_blocks(pairs, at, weights.displacement * amplitude * one.stiffness(instant.state))
+        if self._couples.rows.size:
+            couples = forces[self._couples.rows, COLUMNS["omega"]]
+            insertion.add_blocks(self._couples, self._couples_at, -0.5 * weights.displacement * cross_matrix(couples))
+
+    def load_rate(self, instant: Instant, rate: Loading) -> FloatArray:
+        """See `Term`."""
+        return -to_frames(self._constraints, self.forces(instant.state, rate.loads))
+
+    def predict(self, state: State, increment: Increment) -> Prediction:
+        """See `Term`."""
+        return None
+
+    def recovered(self, nodal: FloatArray, whole: bool) -> FloatArray | None:
+        """See `Term`."""
+        return None
+
+    def noise(self) -> FloatArray:
+        """See `Term`."""
+        return np.zeros(len(COLUMNS) + 1)

@@ -1,0 +1,128 @@
+"""A converged state with its loading: what outputs are evaluated of."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+
+from magshell.arrays import FloatArray, IntArray
+from magshell.equations.discretisation import Assembly, Discretisation
+from magshell.equations.instant import Instant
+from magshell.evaluation.points import PointFields, evaluate, plane_stress_stretch
+from magshell.model.course import Loading
+from magshell.shell import rotation
+from magshell.shell.state import State
+from magshell.shell.unknowns import COMPONENTS
+
+
+class Converged:
+    """A state of equilibrium.
+
+    Parameters
+    ----------
+    discretisation : Discretisation
+    state : State
+    loading : Loading
+    """
+
+    def __init__(self, discretisation: Discretisation, state: State, loading: Loading) -> None:
+        self.discretisation, self.state, self.loading = discretisation, state, loading
+        self.mesh = discretisation.mesh
+
+    @cached_property
+    def assembly(self) -> Assembly:
+        """The residual: at held components the reactions."""
+        return self.discretisation.assemble(Instant(self.state, self.loading), tangent=False)
+
+    @cached_property
+    def energies(self) -> FloatArray:
+        """Elastic and magnetic energy of each element (elements, 2), J; the couple of the field has none."""
+        return self.discretisation.shell.energy(Instant(self.state, self.loading))
+
+    @cached_property
+    def fields(self) -> PointFields:
+        """Deformation gradient, micro-rotation and wryness at the points."""
+        reference, φ = self.discretisation.reference, None
+        if reference.body.plane_stress:
+            φ = plane_stress_stretch(reference, self.state, self.discretisation.materials)
+        return evaluate(reference, self.state, φ)
+
+    def director(self) -> FloatArray:
+        """Director d = D + w (nodes, 3)."""
+        layout = self.discretisation.reference.body.layout
+        return self.discretisation.normals + self._filled(self.state.w, layout.w)
+
+    def phi(self) -> FloatArray:
+        """Thickness stretch φ (nodes,), 1/m."""
+        return self._filled(self.state.phi, self.discretisation.reference.body.layout.phi)
+
+    def rotation(self) -> FloatArray:
+        """Micro-rotation vector (nodes, 3), rad, of magnitude at most π."""
+        q = self.state.q
+        if self.discretisation.reference.body.layout.q == 4:
+            ends = self._mid_side_ends
+            first, second = q[ends[:, 0]], q[ends[:, 1]]
+            sign = np.where(np.sum(first * second, axis=1, keepdims=True) < 0.0, -1.0, 1.0)
+            mean = first + sign * second
+            q = q.copy()
+            q[self._mid_sides] = mean / np.linalg.norm(mean, axis=1, keepdims=True)
+        return rotation.logarithm(q)
+
+    def remanence(self) -> FloatArray:
+        """Remanence in the current configuration, J⁻¹ F B̃ (elements, 3), T, mean over the volume."""
+        F, remanence = self.fields.F, self.discretisation.reference.remanence
+        values = np.einsum("epkxy,epky->epkx", F, remanence) / np.linalg.det(F)[..., None]
+        return self.mean(values)
+
+    def thickness_ratio(self) -> FloatArray:
+        """Deformed over undeformed thickness (elements,), mean of |F D|."""
+        D = self.discretisation.reference.geometry.D
+        return self.mean(np.linalg.norm(np.einsum("epkxy,epy->epkx", self.fields.F, D), axis=-1))
+
+    def mean(self, values: FloatArray) -> FloatArray:
+        """Mean over the volume (elements, ...) of values at the points (elements, p, k, ...)."""
+        volume = self.discretisation.reference.geometry.volume
+        weights = volume / volume.sum(axis=(1, 2), keepdims=True)
+        return np.asarray(np.einsum("epk,epk...->e...", weights, values))
+
+    @cached_property
+    def _mid_sides(self) -> IntArray:
+        return self.mesh.elements[:, 4:].ravel()
+
+    @cached_property
+    def _mid_side_ends(self) -> IntArray:
+        """Corner nodes (mid-sides, 2) on either side of each of `_mid_sides`."""
+        corners = self.mesh.elements[:, :4]
+        return np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2)
+
+    def _filled(self, nodal: FloatArray, carriers: int) -> FloatArray:
+        """A field of an element's first nodes; where these are the corners, mid-sides take the mean of their ends."""
+        if carriers == 8:
+            return nodal
+        values = nodal.copy()
+        values[self._mid_sides] = nodal[self._mid_side_ends].mean(axis=1)
+        return values
+
+
+class Reached(Protocol):
+    """A state on a path, with what acts there."""
+
+    @property
+    def state(self) -> State:
+        """Unknowns."""
+
+    @property
+    def flux_density(self) -> FloatArray:
+        """T, (3,)."""
+
+    @property
+    def loads(self) -> FloatArray:
+        """Multipliers of the model's loads."""
+
+
+def converged(discretisation: Discretisation, step: Reached) -> Converged:
+    """What outputs are evaluated of, at a step. (What is held is the state's.)"""
+    held = np.zeros((len(discretisation.mesh.points), COMPONENTS))
+    return Converged(discretisation, step.state, Loading(step.flux_density, step.loads, held))
