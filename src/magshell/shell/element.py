@@ -208,6 +208,14 @@ def padded(width: int) -> int:
 
 
 @inline
+def copy(A: FloatArray, out: FloatArray) -> None:
+    """Fill out with A."""
+    for i in range(A.shape[0]):
+        for j in range(A.shape[1]):
+            out[i, j] = A[i, j]
+
+
+@inline
 def transpose(A: FloatArray, out: FloatArray) -> None:
     """Fill out with the first rows of Aᵀ."""
     for i in range(A.shape[0]):

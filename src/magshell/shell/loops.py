@@ -20,6 +20,7 @@ from magshell.shell.element import (
     carriers,
     condense,
     contract,
+    copy,
     gather,
     padded,
     place,
@@ -130,6 +131,7 @@ def fill(
     v, T, radial = np.zeros(full), np.zeros((rest, 4, 3)), np.zeros(rest)
     wide = padded(size)
     scratch, vectors, forces = np.zeros((4, wide)), np.zeros((4, 3)), np.zeros((size, 2))
+    g, H = np.zeros((SIZE, 3)), np.zeros((SIZE, PADDED))
     GH, HG = np.zeros((size, PADDED)), np.zeros((SIZE, wide))
     r_sum, factor = np.zeros(size), np.zeros((3 * modes, 3 * modes + nodal + 1))
     records = workspace()
@@ -156,12 +158,19 @@ def fill(
                 return e, 0.0
             out.energy[e, INTERNAL] += w.energy[INTERNAL]
             out.energy[e, MAGNETIC] += w.energy[MAGNETIC]
-            contract(point, enhancement, layout, T, w.g, scratch, forces)
+            for stage in range(3 if tangent else 1):  # one call: the compiler makes one copy of `contract`
+                rows, target = g, forces
+                if stage == 0:
+                    copy(w.g, g)
+                elif stage == 1:
+                    copy(w.H, H)
+                    GH[:, :] = 0.0
+                    rows, target = H, GH
+                else:
+                    transpose(GH, HG)
+                    rows, target = HG, Kt
+                contract(point, enhancement, layout, T, rows, scratch, target)
             if tangent:
-                GH[:, :] = 0.0
-                contract(point, enhancement, layout, T, w.H, scratch, GH)
-                transpose(GH, HG)
-                contract(point, enhancement, layout, T, HG, scratch, Kt)
                 add_radial_force(point, layout, w.g, v, radial)
         for number in range(len(body.hold.k)):
             alpha = state.alpha[e, modes - 1 - number]
