@@ -5,20 +5,19 @@ Writers, pictures and pages all go through `OUTPUTS`, so a new quantity is one e
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from magshell.arrays import AnyArray, FloatArray
+from magshell.arrays import AnyArray
 from magshell.errors import InputError, suggest
 
 if TYPE_CHECKING:
     from magshell.equations.assembly import Discretisation
     from magshell.shell.state import State
-    from magshell.solver.path import Path, Step
 
 
 @dataclass(frozen=True)
@@ -146,19 +145,6 @@ _OUTPUTS = {
     )
 }
 OUTPUTS = MappingProxyType(_OUTPUTS)
-
-
-def without_round_off(path: Path, output: Output, steps: Iterable[Step]) -> Iterator[FloatArray]:
-    """An output at each step; what is nothing but rounding is zero.
-
-    That is 1e-9 of its largest component where the path is farthest from rest.
-    """
-    farthest = max(path.steps, key=lambda step: float(np.abs(step.state.u).max()))
-    noise = 1e-9 * float(np.abs(output.evaluate(path.discretisation, farthest.state)).max())
-    for step in steps:
-        values = np.array(output.evaluate(path.discretisation, step.state), dtype=float)
-        values[np.abs(values) <= noise] = 0.0
-        yield values
 
 
 def find(name: str) -> tuple[Output, int | None]:

@@ -1,6 +1,5 @@
-"""Magnetics: remanence, external field, and the laws that couple them, one per file."""
+"""Magnetics: the external field and the laws that couple it with the remanence, one per file; `remanence/`."""
 
-from magshell.magnetics import remanence
 from magshell.magnetics.deformation_gradient_energy import DeformationGradientEnergy
 from magshell.magnetics.field import UniformField
 from magshell.magnetics.law import Coupling, is_conservative, laws
@@ -15,5 +14,4 @@ __all__ = [
     "UniformField",
     "is_conservative",
     "laws",
-    "remanence",
 ]

@@ -12,19 +12,20 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from magshell.arrays import FloatArray
+from magshell.drawing import drawing
 from magshell.errors import InputError, NothingLoads, suggest
 from magshell.magnetics.deformation_gradient_energy import DeformationGradientEnergy
 from magshell.magnetics.field import UniformField
 from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.model import symmetry
 from magshell.model.course import Amounts, Course, Loading
-from magshell.model.history import amplitudes
 from magshell.model.loads import Applied, Load
 from magshell.model.loads.checks import label
 from magshell.model.rigid import check_supported
 from magshell.model.shell import Shell
 from magshell.model.stages import Stage
 from magshell.model.supports import Constraints, Support, SymmetryPlane, resolve
+from magshell.multipliers import amplitudes
 from magshell.shell.normals import nodal_normals
 from magshell.shell.state import State
 
@@ -111,9 +112,7 @@ class Model:
         return "\n  ".join([f"Model({len(self.stages)} stages, {len(self.probes)} probes)", *map(repr, parts)])
 
     def _repr_html_(self) -> str:
-        from magshell.output.notebook import model_html
-
-        return model_html(self)
+        return str(drawing("model_html")(self))
 
     def _check_targets(self) -> None:
         for stage in self.stages:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError, suggest
 from magshell.mesh import Mesh
-from magshell.model.history import amplitudes
+from magshell.multipliers import amplitudes
 from magshell.shell.unknowns import COLUMNS
 
 FIELDS = tuple(COLUMNS)

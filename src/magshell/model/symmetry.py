@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
+from magshell.magnetics.field import UniformField
 from magshell.mesh import Mesh
 from magshell.mesh.geometry import COINCIDENT
+from magshell.model.course import Course
 from magshell.model.loads import Force, Gravity, Load, Moment, Traction
 from magshell.model.reflection import angle_to_plane, in_plane, is_normal
-from magshell.model.supports import SymmetryPlane
+from magshell.model.shell import Shell
+from magshell.model.stages import Stage
+from magshell.model.supports import Support, SymmetryPlane
 from magshell.shell.normals import nodal_normals
 from magshell.units import ACCELERATION, FLUX_DENSITY, FORCE, MOMENT, STRESS, Dimension, show
-
-if TYPE_CHECKING:
-    from magshell.model.model import Model
 
 logger = logging.getLogger(__name__)
 
@@ -37,7 +38,23 @@ class Plane(NamedTuple):
     nodes: IntArray
 
 
-def planes(model: Model) -> list[Plane]:
+class Mirrored(Protocol):
+    """What is asked of a model here."""
+
+    @property
+    def shell(self) -> Shell: ...
+    @property
+    def supports(self) -> Sequence[Support]: ...
+    @property
+    def field(self) -> UniformField: ...
+    @property
+    def loads(self) -> Sequence[Load]: ...
+    @property
+    def stages(self) -> Sequence[Stage]: ...
+    def course(self, stage: int) -> Course: ...
+
+
+def planes(model: Mirrored) -> list[Plane]:
     """The mirror planes of a model."""
     mesh = model.shell.mesh
     return [
@@ -47,7 +64,7 @@ def planes(model: Model) -> list[Plane]:
     ]
 
 
-def remanence_sign(model: Model, plane: Plane) -> int | None:
+def remanence_sign(model: Mirrored, plane: Plane) -> int | None:
     """How the other half must be magnetised: `MIRRORED` or `REVERSED` (mirrored and reversed); None: in no way.
 
     Without a field or without remanence it is `MIRRORED`, and nothing depends on it.
@@ -58,7 +75,7 @@ def remanence_sign(model: Model, plane: Plane) -> int | None:
     return REVERSED if all(is_normal(vector, plane.normal) for vector in fields) else None
 
 
-def broken(model: Model) -> list[str]:
+def broken(model: Mirrored) -> list[str]:
     """What breaks the model's mirror planes, in sentences: the plane, what breaks it and what would be right."""
     found = []
     for plane in planes(model):
@@ -95,7 +112,7 @@ def _of_place(mesh: Mesh, plane: Plane) -> Iterator[str]:
         )
 
 
-def _of_field(model: Model, plane: Plane) -> Iterator[str]:
+def _of_field(model: Mirrored, plane: Plane) -> Iterator[str]:
     """A field that is neither in the plane nor normal to it, or now this and now that."""
     if not np.any(model.shell.remanence_at_points) or remanence_sign(model, plane) is not None:
         return
@@ -121,7 +138,7 @@ def _of_field(model: Model, plane: Plane) -> Iterator[str]:
     )
 
 
-def _fields(model: Model) -> Iterator[tuple[int, FloatArray]]:
+def _fields(model: Mirrored) -> Iterator[tuple[int, FloatArray]]:
     """Stage and flux density (3,) at multiplier 1 of all fields of the path.
 
     Of one that turns there are three, which are in the plane (normal to it) only if all on the way are.
@@ -136,7 +153,7 @@ def _fields(model: Model) -> Iterator[tuple[int, FloatArray]]:
                 yield number, model.field.turned(angle)
 
 
-def _of_loads(model: Model, plane: Plane) -> Iterator[str]:
+def _of_loads(model: Mirrored, plane: Plane) -> Iterator[str]:
     """Weight and loads in the plane that are not their own image, and loads of an area that jump there."""
     mesh = model.shell.mesh
     for load in model.loads:

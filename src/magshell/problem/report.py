@@ -96,6 +96,13 @@ def describe(problem: Problem) -> Report:
     )
 
 
+def problem_html(problem: Problem) -> str:
+    """The model in a notebook, with the doubts about it."""
+    from magshell.output.notebook import model_html
+
+    return model_html(problem.model, problem.title, describe(problem).warnings)
+
+
 def _figures(problem: Problem) -> _Figures:
     shell, flux = problem.model.shell, np.array(problem.file.field.flux_density)
     mesh, material = shell.mesh, shell.material

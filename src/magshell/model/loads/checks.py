@@ -10,8 +10,8 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
-from magshell.model.history import numbers
 from magshell.model.loads.load import Load
+from magshell.multipliers import numbers
 
 
 def label(load: Load) -> str:

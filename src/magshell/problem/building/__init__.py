@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from magshell import magnetics, materials
+from magshell.drawing import drawing
 from magshell.linalg import make_solver
 from magshell.magnetics import UniformField
 from magshell.materials import Material
@@ -64,10 +65,7 @@ class Problem:
         return f"Problem('{self.source}': {self.title})\n{self.model!r}"
 
     def _repr_html_(self) -> str:
-        from magshell.output.notebook import model_html
-        from magshell.problem.report import describe
-
-        return model_html(self.model, self.title, describe(self).warnings)
+        return str(drawing("problem_html")(self))
 
 
 def build(file: ProblemFile, source: str, text: str = "", folder: pathlib.Path = pathlib.Path()) -> Problem:
