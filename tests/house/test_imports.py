@@ -15,9 +15,10 @@ SOURCES = pathlib.Path(magshell.__file__).parent
 
 # Lowest first; a module belongs to the longest name that it begins with, "" is the package itself.
 LAYERS = (
-    "version", "errors", "units", "arrays", "multipliers", "files", "drawing", "kernel_cache", "compiled", "processes",
-    "openblas", "mesh", "materials", "magnetics", "shell", "magnetics.remanence", "model", "linalg", "equations",
-    "evaluation", "solver", "output", "progress", "problem", "results", "sweep", "reproduction", "cli", "__main__", "",
+    "version", "keys", "errors", "units", "wording", "arrays", "multipliers", "files", "drawing", "kernel_cache",
+    "compiled", "processes", "openblas", "mesh", "materials", "magnetics", "shell", "magnetics.remanence", "model",
+    "linalg", "equations", "evaluation", "solver", "output", "progress", "problem", "results", "sweep", "reproduction",
+    "cli", "__main__", "",
 )  # fmt: skip
 # The one module that finds others upward, by name: from objects to their pictures.
 DOOR = "magshell.drawing"
@@ -98,7 +99,8 @@ def upward(graph: Graph, layers: tuple[str, ...]) -> set[tuple[str, str]]:
         parts = module.split(".")[1:]
         return next(layers.index(name) for k in range(len(parts), -1, -1) if (name := ".".join(parts[:k])) in layers)
 
-    assert all(module.count(".") == 0 or height(module) < len(layers) - 1 for module in graph), "a module has no layer"
+    homeless = [module for module in graph if "." in module and layers[height(module)] == ""]
+    assert not homeless, "modules without a layer"
     return {(module, other) for module, others in graph.items() for other in others if height(other) > height(module)}
 
 

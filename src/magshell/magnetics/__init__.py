@@ -6,7 +6,15 @@ from magshell.magnetics.law import Coupling, is_conservative, laws
 from magshell.magnetics.micro_rotation_energy import MicroRotationEnergy
 from magshell.magnetics.micropolar_couple import MicropolarCouple
 
+COUPLINGS: dict[str, type[Coupling]] = {
+    "couple": MicropolarCouple,
+    "micro-rotation": MicroRotationEnergy,
+    "deformation-gradient": DeformationGradientEnergy,
+}
+"""The coupling laws that problem files know, by their names there."""
+
 __all__ = [
+    "COUPLINGS",
     "Coupling",
     "DeformationGradientEnergy",
     "MicroRotationEnergy",

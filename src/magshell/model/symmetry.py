@@ -13,20 +13,19 @@ from magshell.magnetics.field import UniformField
 from magshell.mesh import Mesh
 from magshell.mesh.geometry import COINCIDENT
 from magshell.model.course import Course
-from magshell.model.loads import Force, Gravity, Load, Moment, Traction
+from magshell.model.loads import Load
 from magshell.model.reflection import angle_to_plane, in_plane, is_normal
 from magshell.model.shell import Shell
 from magshell.model.stages import Stage
 from magshell.model.supports import Support, SymmetryPlane
 from magshell.shell.normals import nodal_normals
-from magshell.units import ACCELERATION, FLUX_DENSITY, FORCE, MOMENT, STRESS, Dimension, show
+from magshell.units import FLUX_DENSITY, Dimension, show
 
 logger = logging.getLogger(__name__)
 
 MIRRORED, REVERSED = 1, -1
 # Degrees by which a coarse curved mesh may miss a right angle between shell and plane.
 FOLD = 15.0
-JUMP = "beyond it acts the image, with the component along the normal reversed"
 WHOLE = "Model the whole part, or choose other planes"
 
 
@@ -157,31 +156,19 @@ def _of_loads(model: Mirrored, plane: Plane) -> Iterator[str]:
     """Weight and loads in the plane that are not their own image, and loads of an area that jump there."""
     mesh = model.shell.mesh
     for load in model.loads:
-        name = load.kind if load.group is None else f"{load.kind} on '{load.group}'"
-        match load:
-            case Moment() if _acts_in(mesh, load, plane):
-                vector = np.array(load.total, dtype=float)
-                if not is_normal(vector, plane.normal):
-                    off = 90.0 - angle_to_plane(vector, plane.normal)
-                    yield (
-                        f"{name} {_shown(vector, MOMENT)} is {off:.3g}° off the normal of the plane, whose support "
-                        f"takes all the rest. {WHOLE}"
-                    )
-                continue
-            case Gravity():
-                given, dimension, effect = load.acceleration, ACCELERATION, "the other half would weigh another way"
-            case Force() if _acts_in(mesh, load, plane):
-                given, dimension, effect = load.total, FORCE, "its support takes what is normal to it"
-            case Force() if _ends_at(mesh, load, plane):
-                given, dimension, effect = load.total, FORCE, JUMP
-            case Traction() if _ends_at(mesh, load, plane):
-                given, dimension, effect = load.traction, STRESS, JUMP
-            case _:
-                continue
-        vector = np.array(given, dtype=float)
-        if not in_plane(vector, plane.normal):
-            off = angle_to_plane(vector, plane.normal)
-            yield f"{name} {_shown(vector, dimension)} is {off:.3g}° off the plane: {effect}. {WHOLE}"
+        at_nodes, at_elements = _acts_in(mesh, load, plane), _ends_at(mesh, load, plane)
+        effect, vector = load.beyond(at_nodes, at_elements), load.vector
+        if vector is None or not effect:
+            continue
+        given = load.kind if load.group is None else f"{load.kind} on '{load.group}'"
+        given += f" {_shown(vector, load.amount[1])}"
+        off = angle_to_plane(vector, plane.normal)
+        if not load.axial and not in_plane(vector, plane.normal):
+            yield f"{given} is {off:.3g}° off the plane: {effect}. {WHOLE}"
+        if load.axial and at_nodes and not is_normal(vector, plane.normal):
+            yield (
+                f"{given} is {90.0 - off:.3g}° off the normal of the plane, whose support takes all the rest. {WHOLE}"
+            )
 
 
 def _acts_in(mesh: Mesh, load: Load, plane: Plane) -> bool:

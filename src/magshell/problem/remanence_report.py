@@ -11,8 +11,8 @@ from magshell.magnetics.remanence.sampled import averaged
 from magshell.mesh.geometry import centres
 from magshell.problem import schema
 from magshell.problem.building import Problem
-from magshell.problem.wording import counted, vector
 from magshell.units import ANGLE, LENGTH, show
+from magshell.wording import counted, vector
 
 
 def doubts(problem: Problem) -> Iterator[str]:

@@ -15,8 +15,8 @@ from magshell.model.reflection import TYPED, polar
 from magshell.model.symmetry import MIRRORED, REVERSED, Plane
 from magshell.problem import schema
 from magshell.problem.building import Problem
-from magshell.problem.wording import quantity
 from magshell.units import FLUX_DENSITY
+from magshell.wording import quantity
 
 # Kinds whose formula, of an entry for the whole part, also holds beyond a mirror plane.
 IN_SPACE = (

@@ -6,27 +6,19 @@ know, such as whether a group exists, is checked in `magshell.problem.building`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Annotated, ClassVar, get_args
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from typing import Annotated, Any, ClassVar, Union, get_args
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, create_model
 
+from magshell.materials import MATERIALS, keys_of
+from magshell.model.loads import LOADS
+from magshell.model.supports import SUPPORTS
 from magshell.problem import fields as f
-from magshell.problem.schema.loading import (
-    ClampTable,
-    FieldTable,
-    ForceTable,
-    GravityTable,
-    Load,
-    MomentTable,
-    PrescribeTable,
-    PressureTable,
-    SimpleTable,
-    Support,
-    SymmetryTable,
-    TractionTable,
-)
-from magshell.problem.schema.material import Material, MooneyRivlin, NeoHookean, ShellTable, StVenantKirchhoff
+from magshell.problem.schema.described import table_of
+from magshell.problem.schema.loading import FieldTable, LoadTable, SupportTable
+from magshell.problem.schema.material import MaterialTable, ShellTable
 from magshell.problem.schema.mesh import (
     Annulus,
     Block,
@@ -62,7 +54,6 @@ __all__ = [
     "Block",
     "Blocks",
     "CircumferentialRemanence",
-    "ClampTable",
     "ConstantRemanence",
     "CurveRemanence",
     "Cylinder",
@@ -71,18 +62,11 @@ __all__ = [
     "FileRemanence",
     "FoldTable",
     "FoldedRemanence",
-    "ForceTable",
-    "GravityTable",
-    "Load",
-    "Material",
+    "LoadTable",
+    "MaterialTable",
     "MeridionalRemanence",
     "Mesh",
     "MeshFile",
-    "MomentTable",
-    "MooneyRivlin",
-    "NeoHookean",
-    "PrescribeTable",
-    "PressureTable",
     "ProblemFile",
     "ProfileRemanence",
     "RadialRemanence",
@@ -91,21 +75,21 @@ __all__ = [
     "RolledRemanence",
     "Selection",
     "ShellTable",
-    "SimpleTable",
     "SolverTable",
     "SpherePatch",
-    "StVenantKirchhoff",
     "StageTable",
-    "Support",
-    "SymmetryTable",
+    "SupportTable",
     "Table",
     "TangentialRemanence",
-    "TractionTable",
+    "load_tables",
+    "material_tables",
+    "problem_file",
+    "support_tables",
 ]
 
 
 class ProblemFile(Table):
-    """The whole file."""
+    """The whole file; `problem_file` has the tables of all materials, loads and supports."""
 
     # Key that chooses among the kinds of a table, and where in the path of an error pydantic puts the choice.
     chosen_by: ClassVar[dict[str, tuple[str, int]]] = {
@@ -120,11 +104,11 @@ class ProblemFile(Table):
     description: str = ""
     mesh: TheMesh
     shell: ShellTable
-    material: Annotated[Material, Field(discriminator="law")]
+    material: MaterialTable
     remanence: tuple[Annotated[Remanence, Field(discriminator="kind")], ...] = ()
     field: FieldTable = FieldTable(flux_density=(0.0, 0.0, 0.0))
-    loads: tuple[Annotated[Load, Field(discriminator="kind")], ...] = ()
-    supports: Annotated[tuple[Annotated[Support, Field(discriminator="kind")], ...], BeforeValidator(f.not_empty)]
+    loads: tuple[LoadTable, ...] = ()
+    supports: tuple[SupportTable, ...]
     stages: tuple[StageTable, ...] = ()
     probes: dict[f.ProbeName, f.Position] = {}
     solver: SolverTable = SolverTable()
@@ -132,6 +116,44 @@ class ProblemFile(Table):
     def files(self) -> list[tuple[str, str]]:
         """Key, as in `remanence[1].file`, and name of every file that the problem names, in the order of the keys."""
         return list(_files(self, ""))
+
+
+def load_tables() -> dict[str, type[Table]]:
+    """The tables of all loads, by kind."""
+    return {name: table_of(load, load.keys, "kind", name, LoadTable) for name, load in LOADS.items()}
+
+
+def support_tables() -> dict[str, type[Table]]:
+    """The tables of all supports, by kind."""
+    return {name: table_of(one, one.keys, "kind", name, SupportTable) for name, one in SUPPORTS.items()}
+
+
+def material_tables() -> dict[str, type[Table]]:
+    """The tables of all material laws, by name."""
+    return {name: table_of(law, keys_of(law), "law", name, MaterialTable) for name, law in MATERIALS.items()}
+
+
+def problem_file() -> type[ProblemFile]:
+    """The model of a file, with the materials, loads and supports that are registered now."""
+    return _problem_file(*(tuple(registry.items()) for registry in (MATERIALS, LOADS, SUPPORTS)))
+
+
+@lru_cache(maxsize=1)
+def _problem_file(*registered: tuple[tuple[str, type], ...]) -> type[ProblemFile]:
+    entries: dict[str, Any] = {
+        "material": (_one_of(material_tables(), "law"), ...),
+        "loads": (_list_of(_one_of(load_tables(), "kind")), ()),
+        "supports": (Annotated[_list_of(_one_of(support_tables(), "kind")), BeforeValidator(f.not_empty)], ...),
+    }
+    return create_model("ProblemFile", __base__=ProblemFile, **entries)
+
+
+def _one_of(tables: Mapping[str, type[Table]], choice: str) -> Any:
+    return Annotated[Union[tuple(tables.values())], Field(discriminator=choice)]  # noqa: UP007
+
+
+def _list_of(entry: Any) -> Any:
+    return tuple.__class_getitem__((entry, ...))
 
 
 def _files(value: object, where: str) -> Iterator[tuple[str, str]]:

@@ -1,4 +1,4 @@
-"""Pieces of text that the parts of a report share."""
+"""Vectors, quantities and counts in words."""
 
 from __future__ import annotations
 
