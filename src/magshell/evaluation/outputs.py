@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -58,7 +57,7 @@ def _element_group(discretisation: Discretisation, state: State) -> AnyArray:
     return numbers
 
 
-_OUTPUTS = {
+OUTPUTS: dict[str, Output] = {
     output.name: output
     for output in (
         Output(
@@ -144,7 +143,7 @@ _OUTPUTS = {
         ),
     )
 }
-OUTPUTS = MappingProxyType(_OUTPUTS)
+"""The quantities, by name, in the order of the files."""
 
 
 def find(name: str) -> tuple[Output, int | None]:
