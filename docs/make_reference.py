@@ -25,10 +25,12 @@ import magshell as ms
 from magshell import keys, units
 from magshell.evaluation.outputs import OUTPUTS
 from magshell.magnetics import COUPLINGS
+from magshell.magnetics.remanence import REMANENCES
 from magshell.materials import MATERIALS, keys_of
 from magshell.model.loads import LOADS
 from magshell.model.supports import SUPPORTS
 from magshell.problem import examples, fields, schema
+from magshell.problem.schema.remanence import Folds
 from magshell.shell.elements import ELEMENTS
 
 PAGE = pathlib.Path(__file__).parent / "problem-file.md"
@@ -74,7 +76,7 @@ KINDS = {
     float: "a quantity",
     tuple[float, float, float]: "three of them",
     schema.Block: "table",
-    tuple[schema.FoldTable, ...]: "list of folds, see below",
+    Folds: "list of folds, see below",
     tuple[fields.PositiveFluxDensity, ...]: "list of flux densities > 0, rising",
     dict[fields.Name, schema.Selection]: "table of selections",
     dict[fields.Name, schema.Block]: "table of blocks",
@@ -83,12 +85,6 @@ KINDS = {
 GROUPS = {
     "edge_groups": "More named edges, see *Selections*.",
     "node_groups": "More named nodes, see *Selections*.",
-}
-REMANENCE = {"kind": "Which field.", "group": "Element groups it holds for; may be left out of a single entry."}
-TEMPLATE = {
-    **REMANENCE,
-    "magnitude": "Magnitude that the part keeps.",
-    "direction": "Of the uniform magnetising field, with the part in the shape below.",
 }
 HISTORY = {"history": keys.HISTORY.meaning}
 
@@ -180,98 +176,6 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "`length_scale` are 0, and whose coupling is `deformation-gradient`.",
         },
     ),
-    "constant": (
-        schema.ConstantRemanence,
-        {
-            **REMANENCE,
-            "vector": "The remanent flux density; or instead",
-            "magnitude": "its magnitude, and",
-            "direction": "its direction.",
-        },
-    ),
-    "meridional": (
-        schema.MeridionalRemanence,
-        {
-            **REMANENCE,
-            "magnitude": "Its magnitude.",
-            "axis": "From the centre (the origin) to the pole that it points away from.",
-            "mirrored": "Whether it is reversed below the equator.",
-        },
-    ),
-    "circumferential": (
-        schema.CircumferentialRemanence,
-        {
-            **REMANENCE,
-            "magnitude": "Its magnitude.",
-            "axis": "Of the circles, through the origin; the sense is axis × radius.",
-            "towards": "Where its component along this direction would be negative, the sign is flipped.",
-        },
-    ),
-    "radial": (
-        schema.RadialRemanence,
-        {
-            **REMANENCE,
-            "magnitude": "Its magnitude.",
-            "axis": "Direction of the axis.",
-            "through": "A point of the axis.",
-            "inward": "Towards the axis instead of away from it.",
-        },
-    ),
-    "tangential": (
-        schema.TangentialRemanence,
-        {
-            **REMANENCE,
-            "magnitude": "Its magnitude.",
-            "direction": "Laid into the tangent plane of the surface at every point.",
-        },
-    ),
-    "along-curve": (
-        schema.CurveRemanence,
-        {
-            **REMANENCE,
-            "curve": "Group of edges: the tangent at its nearest point is the direction. It runs as its first edge.",
-            "magnitude": "Its magnitude.",
-            "towards": "Where its component along this direction would be negative, the sign is flipped.",
-        },
-    ),
-    "profile": (
-        schema.ProfileRemanence,
-        {
-            **REMANENCE,
-            "along": "Direction of the coordinate $s$.",
-            "positions": "Values of $s$, rising.",
-            "magnitude": "At the positions, or one for all; linear between, constant beyond. May change sign.",
-            "direction": "Of the remanence at angle 0.",
-            "angle": "At the positions, or one for all; linear between, constant beyond. May pass 360°.",
-            "towards": "Direction into which a positive angle turns; needed with an angle.",
-            "origin": "Where $s = 0$.",
-        },
-    ),
-    "remanence-file": (
-        schema.FileRemanence,
-        {
-            **REMANENCE,
-            "file": "CSV with the columns `b1,b2,b3` and, if its rows are places, `x1,x2,x3`; without them one row per "
-            "element. Or a `.npy` array (elements, 3).",
-            "flux_density_unit": 'Unit of the vectors, such as `"mT"`.',
-            "length_unit": "Unit of the places.",
-            "tolerance": "Largest distance from the centre of an element to its place.",
-        },
-    ),
-    "rolled": (
-        schema.RolledRemanence,
-        {
-            **TEMPLATE,
-            "radius": "Of the rolled mid-surface.",
-            "through": "A point of the line at which rolling begins; what lies before stays flat.",
-            "along": "In the flat part, normal to that line: the direction of rolling.",
-            "towards": "Normal of the flat part, to the side of the cylinder.",
-        },
-    ),
-    "folded": (
-        schema.FoldedRemanence,
-        {**TEMPLATE, "folds": "From the piece that stays outwards, each as on the flat part."},
-    ),
     "fold": (
         schema.FoldTable,
         {
@@ -280,15 +184,6 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "towards": "Normal of the flat part: into which that piece moves.",
             "angle": "By which it turns.",
             "radius": "Of the bend; 0 for a sharp fold.",
-        },
-    ),
-    "deformed": (
-        schema.DeformedRemanence,
-        {
-            **TEMPLATE,
-            "displacements": "CSV with the columns `u1,u2,u3` and, for the undeformed places of the nodes, `x1,x2,x3`; "
-            "without them one row per node. Or a `.npy` array (nodes, 3).",
-            "length_unit": "Unit of its numbers.",
         },
     ),
     "field": (
@@ -357,10 +252,15 @@ class Described(NamedTuple):
     which: dict[str, str]
 
 
+ENTRY = {"kind": "Which field.", "group": "Element groups it holds for; may be left out of a single entry."}
 DESCRIBED = {
     **{
         name.removeprefix("micropolar-"): Described(table, keys_of(MATERIALS[name]), {"law": "The material law."})
         for name, table in schema.material_tables().items()
+    },
+    **{
+        "remanence-file" if name == "file" else name: Described(table, REMANENCES[name].keys, ENTRY)
+        for name, table in schema.remanence_tables().items()
     },
     **{
         name: Described(table, LOADS[name].keys, {"kind": "Which load."})
@@ -394,8 +294,6 @@ OTHERWISE = {
     ("mesh-file", "unit"): "that which the file says",
     ("field", "history"): keys.HISTORY.otherwise,
     **{(name, key): a.otherwise for name, one in DESCRIBED.items() for key, a in one.keys.items() if a.otherwise},
-    ("constant", "vector"): "magnitude and direction",
-    ("profile", "angle"): "0",
     ("file", "field"): "none",
     ("file", "solver"): "see below",
 }

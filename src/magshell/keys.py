@@ -7,7 +7,7 @@ parameters of the class are the keys, with its defaults.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 
@@ -36,7 +36,7 @@ HISTORY = Key(
 )
 
 
-def defaults(cls: type) -> Mapping[str, Any]:
-    """The parameters of a class (a dataclass or NamedTuple) that have a default, with it."""
-    parameters = inspect.signature(cls).parameters.values()
+def defaults(make: Callable[..., Any]) -> Mapping[str, Any]:
+    """The parameters of a class or function that have a default, with it."""
+    parameters = inspect.signature(make).parameters.values()
     return {one.name: one.default for one in parameters if one.default is not one.empty}

@@ -18,6 +18,7 @@ from magshell import cli
 from magshell.evaluation.outputs import OUTPUTS
 from magshell.keys import Key
 from magshell.magnetics import COUPLINGS
+from magshell.magnetics.remanence import REMANENCES
 from magshell.materials import MATERIALS, keys_of
 from magshell.model.loads import LOADS
 from magshell.model.supports import SUPPORTS
@@ -30,7 +31,7 @@ from magshell.shell.elements import ELEMENTS
 
 LAYOUT = (pathlib.Path(__file__).parents[2] / "docs" / "layout.md").read_text()
 RECIPES = dict(re.findall(r"^## (Add .+?)\n(.*?)(?=^## |\Z)", LAYOUT, re.MULTILINE | re.DOTALL))
-REGISTRIES = (COUPLINGS, ELEMENTS, LOADS, MATERIALS, OUTPUTS, SUPPORTS)
+REGISTRIES = (COUPLINGS, ELEMENTS, LOADS, MATERIALS, OUTPUTS, REMANENCES, SUPPORTS)
 # A law is compiled for most of a minute: `tests/materials` solves with one of a user's own file.
 ELSEWHERE = {"Add a material law"}
 
@@ -126,6 +127,16 @@ def test_a_load(follow: Callable, used: Callable, tmp_path: pathlib.Path) -> Non
         ms.InputError, match=r"slip\.toml: loads\[0\]\.pusch: is an unknown key\. Did you mean 'push'\?"
     ):
         ms.problem.load(slip)
+
+
+def test_a_way_to_magnetise(follow: Callable, used: Callable) -> None:
+    follow("Add a way to magnetise")
+    plain = BLOCKS[BLOCKS.index("[[remanence]]") : BLOCKS.index("[field]")]
+    said, path = used(BLOCKS.replace(plain, block("Add a way to magnetise", "toml")))
+    assert re.search(r"everywhere +143 mT, in stripes of 10 mm", said)
+    group = '[[remanence]]\nkind = "constant"\ngroup = "{}"\nvector = ["{} mT", 0, 0]\n'
+    same = tip_of(BLOCKS.replace(plain, group.format("one", 143) + group.format("two", -143)))
+    assert tip(path) == pytest.approx(same, rel=1e-9, abs=1e-15)
 
 
 def test_a_support(follow: Callable, used: Callable) -> None:

@@ -15,9 +15,6 @@ from magshell.problem.reading import Source, parse
 from magshell.units import FLUX_DENSITY, quoted, shortened
 from magshell.units import parse as quantity
 
-VECTORS = ("flux_density", "vector")
-"""Keys of vectors of fields and remanences."""
-
 _PART = re.compile(r"\.?([^.\[\]]+)|\[(\d{1,6})\]")
 
 
@@ -85,12 +82,13 @@ def put(data: dict[str, Any], key: str, value: Value) -> None:
 
 def vectors() -> set[str]:
     """Keys of vectors: a magnitude given to one of them keeps the direction that the file says."""
+    from magshell.magnetics.remanence import REMANENCES
     from magshell.model.loads import LOADS
     from magshell.model.supports import SUPPORTS
 
-    tables = [cls.keys for cls in LOADS.values()] + [cls.keys for cls in SUPPORTS.values()]
+    tables = [one.keys for registry in (REMANENCES, LOADS, SUPPORTS) for one in registry.values()]
     kinds = [(key, about.kind) for keys in tables for key, about in keys.items()]
-    return {*VECTORS, *(key for key, kind in kinds if kind.endswith("Vector") or kind == "NodalValue")}
+    return {"flux_density", *(key for key, kind in kinds if kind.endswith("Vector") or kind == "NodalValue")}
 
 
 def _place(data: dict[str, Any], key: str) -> tuple[Any, Any]:

@@ -191,18 +191,19 @@ def _located(details: Mapping[str, Any]) -> tuple[str, str]:
 
 def _kinds(table: str) -> list[str]:
     """What the key that chooses the kind of a table may say."""
+    from magshell.magnetics.remanence import REMANENCES
     from magshell.materials import MATERIALS
     from magshell.model.loads import LOADS
     from magshell.model.supports import SUPPORTS
     from magshell.problem import schema
 
-    registries: dict[str, Mapping[str, type]] = {"material": MATERIALS, "supports": SUPPORTS, "loads": LOADS}
-    if table in registries:
-        return list(registries[table])
-    kinds = {"mesh": schema.Mesh, "remanence": schema.Remanence}
-    choice, _ = schema.ProblemFile.chosen_by[table]
-    fields = [kind.model_fields.get(choice) for kind in get_args(kinds[table])]
-    return [get_args(field.annotation)[0] for field in fields if field is not None]
+    if table == "mesh":
+        fields = [kind.model_fields.get("generator") for kind in get_args(schema.Mesh)]
+        return [get_args(field.annotation)[0] for field in fields if field is not None]
+    registries: dict[str, Mapping[str, Any]] = {
+        "material": MATERIALS, "remanence": REMANENCES, "supports": SUPPORTS, "loads": LOADS,
+    }  # fmt: skip
+    return list(registries[table])
 
 
 def _written(where: Sequence[str | int]) -> str:

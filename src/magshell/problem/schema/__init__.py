@@ -12,6 +12,7 @@ from typing import Annotated, Any, ClassVar, Union, get_args
 
 from pydantic import BeforeValidator, Field, create_model
 
+from magshell.magnetics.remanence import REMANENCES
 from magshell.materials import MATERIALS, keys_of
 from magshell.model.loads import LOADS
 from magshell.model.supports import SUPPORTS
@@ -31,21 +32,7 @@ from magshell.problem.schema.mesh import (
     SpherePatch,
     TheMesh,
 )
-from magshell.problem.schema.remanence import (
-    CircumferentialRemanence,
-    ConstantRemanence,
-    CurveRemanence,
-    DeformedRemanence,
-    FileRemanence,
-    FoldedRemanence,
-    FoldTable,
-    MeridionalRemanence,
-    ProfileRemanence,
-    RadialRemanence,
-    Remanence,
-    RolledRemanence,
-    TangentialRemanence,
-)
+from magshell.problem.schema.remanence import FoldTable, RemanenceTable
 from magshell.problem.schema.solving import SolverTable, StageTable
 from magshell.problem.schema.table import Table
 
@@ -53,26 +40,16 @@ __all__ = [
     "Annulus",
     "Block",
     "Blocks",
-    "CircumferentialRemanence",
-    "ConstantRemanence",
-    "CurveRemanence",
     "Cylinder",
-    "DeformedRemanence",
     "FieldTable",
-    "FileRemanence",
     "FoldTable",
-    "FoldedRemanence",
     "LoadTable",
     "MaterialTable",
-    "MeridionalRemanence",
     "Mesh",
     "MeshFile",
     "ProblemFile",
-    "ProfileRemanence",
-    "RadialRemanence",
     "Rectangle",
-    "Remanence",
-    "RolledRemanence",
+    "RemanenceTable",
     "Selection",
     "ShellTable",
     "SolverTable",
@@ -80,16 +57,16 @@ __all__ = [
     "StageTable",
     "SupportTable",
     "Table",
-    "TangentialRemanence",
     "load_tables",
     "material_tables",
     "problem_file",
+    "remanence_tables",
     "support_tables",
 ]
 
 
 class ProblemFile(Table):
-    """The whole file; `problem_file` has the tables of all materials, loads and supports."""
+    """The whole file; `problem_file` has the tables of all that is registered."""
 
     # Key that chooses among the kinds of a table, and where in the path of an error pydantic puts the choice.
     chosen_by: ClassVar[dict[str, tuple[str, int]]] = {
@@ -105,7 +82,7 @@ class ProblemFile(Table):
     mesh: TheMesh
     shell: ShellTable
     material: MaterialTable
-    remanence: tuple[Annotated[Remanence, Field(discriminator="kind")], ...] = ()
+    remanence: tuple[RemanenceTable, ...] = ()
     field: FieldTable = FieldTable(flux_density=(0.0, 0.0, 0.0))
     loads: tuple[LoadTable, ...] = ()
     supports: tuple[SupportTable, ...]
@@ -118,30 +95,36 @@ class ProblemFile(Table):
         return list(_files(self, ""))
 
 
+def material_tables() -> dict[str, type[Table]]:
+    """The tables of all material laws, by name."""
+    return {name: table_of("law", name, law, keys_of(law), MaterialTable) for name, law in MATERIALS.items()}
+
+
+def remanence_tables() -> dict[str, type[Table]]:
+    """The tables of all ways to magnetise, by kind."""
+    return {name: table_of("kind", name, way.make, way.keys, RemanenceTable) for name, way in REMANENCES.items()}
+
+
 def load_tables() -> dict[str, type[Table]]:
     """The tables of all loads, by kind."""
-    return {name: table_of(load, load.keys, "kind", name, LoadTable) for name, load in LOADS.items()}
+    return {name: table_of("kind", name, load, load.keys, LoadTable) for name, load in LOADS.items()}
 
 
 def support_tables() -> dict[str, type[Table]]:
     """The tables of all supports, by kind."""
-    return {name: table_of(one, one.keys, "kind", name, SupportTable) for name, one in SUPPORTS.items()}
-
-
-def material_tables() -> dict[str, type[Table]]:
-    """The tables of all material laws, by name."""
-    return {name: table_of(law, keys_of(law), "law", name, MaterialTable) for name, law in MATERIALS.items()}
+    return {name: table_of("kind", name, one, one.keys, SupportTable) for name, one in SUPPORTS.items()}
 
 
 def problem_file() -> type[ProblemFile]:
-    """The model of a file, with the materials, loads and supports that are registered now."""
-    return _problem_file(*(tuple(registry.items()) for registry in (MATERIALS, LOADS, SUPPORTS)))
+    """The model of a file, with all that is registered now."""
+    return _problem_file(*(tuple(registry.items()) for registry in (MATERIALS, REMANENCES, LOADS, SUPPORTS)))
 
 
 @lru_cache(maxsize=1)
-def _problem_file(*registered: tuple[tuple[str, type], ...]) -> type[ProblemFile]:
+def _problem_file(*registered: tuple[tuple[str, Any], ...]) -> type[ProblemFile]:
     entries: dict[str, Any] = {
         "material": (_one_of(material_tables(), "law"), ...),
+        "remanence": (_list_of(_one_of(remanence_tables(), "kind")), ()),
         "loads": (_list_of(_one_of(load_tables(), "kind")), ()),
         "supports": (Annotated[_list_of(_one_of(support_tables(), "kind")), BeforeValidator(f.not_empty)], ...),
     }
