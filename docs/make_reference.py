@@ -4,7 +4,8 @@ outputs of `docs/pictures.md` from the registry.
     python docs/make_reference.py            write
     python docs/make_reference.py --check    exit with 1 if a page is not what would be written
 
-What a key means is said here; its kind, and its default, are those of `magshell.problem.schema`.
+What a key means is said here, or by the load, support or material law itself; its kind, and its default, are those of
+`magshell.problem.schema`.
 """
 
 from __future__ import annotations
@@ -13,16 +14,24 @@ import argparse
 import dataclasses
 import pathlib
 import sys
-from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, NamedTuple, get_args, get_origin, get_type_hints
 
 import blocks
 from pydantic import StrictBool
 from pydantic_core import PydanticUndefined
 
 import magshell as ms
-from magshell import units
+from magshell import keys, units
 from magshell.evaluation.outputs import OUTPUTS
+from magshell.magnetics import COUPLINGS
+from magshell.magnetics.remanence import REMANENCES
+from magshell.materials import MATERIALS, keys_of
+from magshell.model.loads import LOADS
+from magshell.model.supports import SUPPORTS
 from magshell.problem import examples, fields, schema
+from magshell.problem.schema.remanence import Folds
+from magshell.shell.elements import ELEMENTS
 
 PAGE = pathlib.Path(__file__).parent / "problem-file.md"
 RESULTS = pathlib.Path(__file__).parent / "pictures.md"
@@ -67,7 +76,7 @@ KINDS = {
     float: "a quantity",
     tuple[float, float, float]: "three of them",
     schema.Block: "table",
-    tuple[schema.FoldTable, ...]: "list of folds, see below",
+    Folds: "list of folds, see below",
     tuple[fields.PositiveFluxDensity, ...]: "list of flux densities > 0, rising",
     dict[fields.Name, schema.Selection]: "table of selections",
     dict[fields.Name, schema.Block]: "table of blocks",
@@ -77,23 +86,7 @@ GROUPS = {
     "edge_groups": "More named edges, see *Selections*.",
     "node_groups": "More named nodes, see *Selections*.",
 }
-MATERIAL = {
-    "law": "The material law.",
-    "shear_modulus": "$\\mu$.",
-    "lame_lambda": "$\\lambda$.",
-    "coupling_modulus": "$\\eta$, which ties the micro-rotation to the macro-rotation.",
-    "length_scale": "$l$ of the couple stress $\\mu l^2\\,\\Gamma$.",
-}
-REMANENCE = {"kind": "Which field.", "group": "Element groups it holds for; may be left out of a single entry."}
-TEMPLATE = {
-    **REMANENCE,
-    "magnitude": "Magnitude that the part keeps.",
-    "direction": "Of the uniform magnetising field, with the part in the shape below.",
-}
-SUPPORT = {"kind": "Which support.", "group": "Group of edges, nodes or elements whose nodes are held."}
-LOAD = {"kind": "Which load.", "group": "Group of edges, nodes or elements that it acts on."}
-ON_ELEMENTS = {**LOAD, "group": "Group of elements that it acts on."}
-HISTORY = {"history": "Multiplier at the end of each stage; left out: 1 at the end of the first and from then on."}
+HISTORY = {"history": keys.HISTORY.meaning}
 
 TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
     "rectangle": (
@@ -183,104 +176,6 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "`length_scale` are 0, and whose coupling is `deformation-gradient`.",
         },
     ),
-    "neo-hookean": (schema.NeoHookean, MATERIAL),
-    "mooney-rivlin": (
-        schema.MooneyRivlin,
-        {**MATERIAL, "second_invariant_share": "Part of $\\mu$ carried by the second invariant, in [0, 1)."},
-    ),
-    "st-venant-kirchhoff": (schema.StVenantKirchhoff, MATERIAL),
-    "constant": (
-        schema.ConstantRemanence,
-        {
-            **REMANENCE,
-            "vector": "The remanent flux density; or instead",
-            "magnitude": "its magnitude, and",
-            "direction": "its direction.",
-        },
-    ),
-    "meridional": (
-        schema.MeridionalRemanence,
-        {
-            **REMANENCE,
-            "magnitude": "Its magnitude.",
-            "axis": "From the centre (the origin) to the pole that it points away from.",
-            "mirrored": "Whether it is reversed below the equator.",
-        },
-    ),
-    "circumferential": (
-        schema.CircumferentialRemanence,
-        {
-            **REMANENCE,
-            "magnitude": "Its magnitude.",
-            "axis": "Of the circles, through the origin; the sense is axis × radius.",
-            "towards": "Where its component along this direction would be negative, the sign is flipped.",
-        },
-    ),
-    "radial": (
-        schema.RadialRemanence,
-        {
-            **REMANENCE,
-            "magnitude": "Its magnitude.",
-            "axis": "Direction of the axis.",
-            "through": "A point of the axis.",
-            "inward": "Towards the axis instead of away from it.",
-        },
-    ),
-    "tangential": (
-        schema.TangentialRemanence,
-        {
-            **REMANENCE,
-            "magnitude": "Its magnitude.",
-            "direction": "Laid into the tangent plane of the surface at every point.",
-        },
-    ),
-    "along-curve": (
-        schema.CurveRemanence,
-        {
-            **REMANENCE,
-            "curve": "Group of edges: the tangent at its nearest point is the direction. It runs as its first edge.",
-            "magnitude": "Its magnitude.",
-            "towards": "Where its component along this direction would be negative, the sign is flipped.",
-        },
-    ),
-    "profile": (
-        schema.ProfileRemanence,
-        {
-            **REMANENCE,
-            "along": "Direction of the coordinate $s$.",
-            "positions": "Values of $s$, rising.",
-            "magnitude": "At the positions, or one for all; linear between, constant beyond. May change sign.",
-            "direction": "Of the remanence at angle 0.",
-            "angle": "At the positions, or one for all; linear between, constant beyond. May pass 360°.",
-            "towards": "Direction into which a positive angle turns; needed with an angle.",
-            "origin": "Where $s = 0$.",
-        },
-    ),
-    "remanence-file": (
-        schema.FileRemanence,
-        {
-            **REMANENCE,
-            "file": "CSV with the columns `b1,b2,b3` and, if its rows are places, `x1,x2,x3`; without them one row per "
-            "element. Or a `.npy` array (elements, 3).",
-            "flux_density_unit": 'Unit of the vectors, such as `"mT"`.',
-            "length_unit": "Unit of the places.",
-            "tolerance": "Largest distance from the centre of an element to its place.",
-        },
-    ),
-    "rolled": (
-        schema.RolledRemanence,
-        {
-            **TEMPLATE,
-            "radius": "Of the rolled mid-surface.",
-            "through": "A point of the line at which rolling begins; what lies before stays flat.",
-            "along": "In the flat part, normal to that line: the direction of rolling.",
-            "towards": "Normal of the flat part, to the side of the cylinder.",
-        },
-    ),
-    "folded": (
-        schema.FoldedRemanence,
-        {**TEMPLATE, "folds": "From the piece that stays outwards, each as on the flat part."},
-    ),
     "fold": (
         schema.FoldTable,
         {
@@ -289,15 +184,6 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "towards": "Normal of the flat part: into which that piece moves.",
             "angle": "By which it turns.",
             "radius": "Of the bend; 0 for a sharp fold.",
-        },
-    ),
-    "deformed": (
-        schema.DeformedRemanence,
-        {
-            **TEMPLATE,
-            "displacements": "CSV with the columns `u1,u2,u3` and, for the undeformed places of the nodes, `x1,x2,x3`; "
-            "without them one row per node. Or a `.npy` array (nodes, 3).",
-            "length_unit": "Unit of its numbers.",
         },
     ),
     "field": (
@@ -309,59 +195,6 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "rotation": "Angle by which it is turned at the end of each stage.",
             "stops": "Magnitudes that the path must hit wherever it passes them; the end is always hit.",
             "coupling": "The law that couples field and shell, see the [theory page](theory.md#5-magnetic-coupling).",
-        },
-    ),
-    "force": (
-        schema.ForceTable,
-        {
-            **LOAD,
-            "total": "Its sum over the group.",
-            "follower": "Whether it turns with the micro-rotations of its nodes.",
-            **HISTORY,
-        },
-    ),
-    "moment": (
-        schema.MomentTable,
-        {
-            **LOAD,
-            "total": "Its sum over the group.",
-            "follower": "Whether it turns with the micro-rotations of its nodes.",
-            **HISTORY,
-        },
-    ),
-    "traction": (
-        schema.TractionTable,
-        {**ON_ELEMENTS, "traction": "Force per area of the undeformed mid-surface.", **HISTORY},
-    ),
-    "pressure": (
-        schema.PressureTable,
-        {
-            **ON_ELEMENTS,
-            "pressure": "Per area of the deformed mid-surface; positive pushes along its normal.",
-            **HISTORY,
-        },
-    ),
-    "gravity": (
-        schema.GravityTable,
-        {
-            "kind": "Which load.",
-            "acceleration": "Of free fall.",
-            "group": "Group of elements that has weight.",
-            **HISTORY,
-        },
-    ),
-    "clamp": (schema.ClampTable, SUPPORT),
-    "simple": (schema.SimpleTable, SUPPORT),
-    "symmetry": (schema.SymmetryTable, {**SUPPORT, "normal": "Of the mirror plane."}),
-    "prescribe": (
-        schema.PrescribeTable,
-        {
-            **SUPPORT,
-            "field": "Displacement (length), director displacement (number), thickness stretch (1/length), "
-            "rotation (angle).",
-            "component": "Along $X_1$, $X_2$ or $X_3$; left out: all three.",
-            "value": "One value, or three where all components are meant.",
-            **HISTORY,
         },
     ),
     "stage": (
@@ -410,6 +243,39 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
     ),
 }
 
+
+class Described(NamedTuple):
+    """A thing that describes its keys itself."""
+
+    table: type[schema.Table]
+    keys: Mapping[str, keys.Key]
+    which: dict[str, str]
+
+
+ENTRY = {"kind": "Which field.", "group": "Element groups it holds for; may be left out of a single entry."}
+DESCRIBED = {
+    **{
+        name.removeprefix("micropolar-"): Described(table, keys_of(MATERIALS[name]), {"law": "The material law."})
+        for name, table in schema.material_tables().items()
+    },
+    **{
+        "remanence-file" if name == "file" else name: Described(table, REMANENCES[name].keys, ENTRY)
+        for name, table in schema.remanence_tables().items()
+    },
+    **{
+        name: Described(table, LOADS[name].keys, {"kind": "Which load."})
+        for name, table in schema.load_tables().items()
+    },
+    **{
+        name: Described(table, SUPPORTS[name].keys, {"kind": "Which support."})
+        for name, table in schema.support_tables().items()
+    },
+}
+TABLES |= {
+    name: (one.table, {**one.which, **{key: about.meaning for key, about in one.keys.items()}})
+    for name, one in DESCRIBED.items()
+}
+
 TOP = {
     "mesh": "table",
     "shell": "table",
@@ -423,22 +289,11 @@ TOP = {
     "probes": "table of positions",
 }
 OTHERWISE = {
-    ("neo-hookean", "coupling_modulus"): "$\\mu/10$",
-    ("neo-hookean", "length_scale"): "$h/10$",
-    ("mooney-rivlin", "coupling_modulus"): "$\\mu/10$",
-    ("mooney-rivlin", "length_scale"): "$h/10$",
-    ("st-venant-kirchhoff", "coupling_modulus"): "$\\mu/10$",
-    ("st-venant-kirchhoff", "length_scale"): "$h/10$",
     ("blocks", "elements"): "each block its own",
     ("block", "elements"): "those of `mesh`",
-    ("gravity", "group"): "the whole shell",
     ("mesh-file", "unit"): "that which the file says",
-    **{
-        (kind, "history"): "`[1, 1, …]`"
-        for kind in ("force", "moment", "traction", "pressure", "gravity", "field", "prescribe")
-    },
-    ("constant", "vector"): "magnitude and direction",
-    ("profile", "angle"): "0",
+    ("field", "history"): keys.HISTORY.otherwise,
+    **{(name, key): a.otherwise for name, one in DESCRIBED.items() for key, a in one.keys.items() if a.otherwise},
     ("file", "field"): "none",
     ("file", "solver"): "see below",
 }
@@ -502,6 +357,10 @@ def table(name: str) -> str:
 
 def kind_of(hint: Any) -> str:
     """In words, what may stand to the right of the equals sign."""
+    if hint == fields.Element:
+        hint = Literal[tuple(ELEMENTS)]
+    if hint == fields.Coupling:
+        hint = Literal[tuple(COUPLINGS)]
     if get_origin(hint) is Literal:
         return " or ".join(f'`"{choice}"`' if isinstance(choice, str) else f"`{choice}`" for choice in get_args(hint))
     for known, words in KINDS.items():

@@ -17,7 +17,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from magshell import magnetics, materials
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
 from magshell.magnetics import UniformField, remanence
 from magshell.mesh import Mesh, rectangle, split
 from magshell.model.course import Loading

@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 import magshell as ms
 from element_study.cases import built_in, moved
 from magshell import assembly
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
 from magshell.mesh import Mesh
 from magshell.model.course import Loading
 from magshell.model.loads import Force

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import magshell as ms
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
 from magshell.files import write_atomically
 from magshell.linalg import make_solver, nested_dissection
 from magshell.solver.newton import StepFailure, System, Trial, newton

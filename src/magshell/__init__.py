@@ -8,9 +8,11 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from magshell.version import __version__ as __version__
+
 if TYPE_CHECKING:
     from magshell import mesh, problem, results
-    from magshell.errors import InputError, MeshError, SolveError
+    from magshell.errors import InputError, MeshError
     from magshell.magnetics import (
         DeformationGradientEnergy,
         MicropolarCouple,
@@ -24,13 +26,11 @@ if TYPE_CHECKING:
     from magshell.model.shell import Shell
     from magshell.model.stages import Stage
     from magshell.model.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane
-    from magshell.solver import CriticalPoint, Observer, Path, Settings, Step, resume, solve
+    from magshell.solver import CriticalPoint, Observer, Path, Settings, SolveError, Step, resume, solve
     from magshell.solver.buckling import Buckling, BucklingMode, buckling
 
-__version__ = "0.1.0"
-
 _HOME = {
-    "magshell.errors": ("InputError", "MeshError", "SolveError"),
+    "magshell.errors": ("InputError", "MeshError"),
     "magshell.model.loads": ("Force", "Gravity", "Moment", "Pressure", "Traction"),
     "magshell.magnetics": (
         "DeformationGradientEnergy",
@@ -41,7 +41,7 @@ _HOME = {
     "magshell.materials": ("MicropolarMooneyRivlin", "MicropolarNeoHookean", "MicropolarStVenantKirchhoff"),
     "magshell.model.model": ("Model",),
     "magshell.model.shell": ("Shell",),
-    "magshell.solver": ("CriticalPoint", "Observer", "Path", "Settings", "Step", "resume", "solve"),
+    "magshell.solver": ("CriticalPoint", "Observer", "Path", "Settings", "SolveError", "Step", "resume", "solve"),
     "magshell.solver.buckling": ("Buckling", "BucklingMode", "buckling"),
     "magshell.model.stages": ("Stage",),
     "magshell.model.supports": ("Clamp", "Prescribe", "SimpleSupport", "SymmetryPlane"),

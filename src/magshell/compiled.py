@@ -103,7 +103,8 @@ class Callback(_Kept):
     Parameters
     ----------
     function : callable
-        Of a pointer to float64 for each "p" of the signature and a float for each "d"; returns a float. It may allocate.
+        Of a pointer to float64 for each "p" of the signature and a float for each "d"; returns a float. It may
+        allocate.
     signature : str
         For instance "ppd".
     owner : type
@@ -124,7 +125,7 @@ class Callback(_Kept):
     def address(self) -> int:
         """Address of the machine code in this process; the first use compiles it or reads it from the cache."""
         with self._one_process():
-            made = CFunc(self._function, self._signature, locals={}, options=dict(_LAW_OPTIONS))
+            made: Any = CFunc(self._function, self._signature, locals={}, options=dict(_LAW_OPTIONS))
             made._cache = self._store()
             made.compile()
             self._keep = made  # the code lives as long as this object
@@ -158,7 +159,7 @@ def _file_of(thing: Any) -> pathlib.Path:
     return pathlib.Path(inspect.getfile(thing))
 
 
-@intrinsic
+@intrinsic  # type: ignore[untyped-decorator]
 def call(typing: Any, address: Any, *kinds: Any) -> Any:
     """Call the function at an address with the data pointers of arrays, and numbers; it returns a float."""
 

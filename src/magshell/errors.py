@@ -1,14 +1,10 @@
-"""What can go wrong, in the user's terms: bad input, a bad mesh, a solve that cannot go on."""
+"""What can go wrong, in the user's terms: bad input, a bad mesh."""
 
 from __future__ import annotations
 
 import difflib
 import errno
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from magshell.solver.path import Path
 
 
 class InputError(ValueError):
@@ -21,23 +17,6 @@ class NothingLoads(InputError):
 
 class MeshError(InputError):
     """The mesh cannot carry a shell; the message names elements or nodes."""
-
-
-class SolveError(RuntimeError):
-    """The load path could not be followed to its end.
-
-    Attributes
-    ----------
-    reason : str
-        Why, and what to try.
-    path : Path
-        Every converged step up to the failure.
-    """
-
-    def __init__(self, reason: str, path: Path) -> None:
-        super().__init__(reason)
-        self.reason = reason
-        self.path = path
 
 
 # What Python, its threads and the loader of libraries say.

@@ -20,8 +20,9 @@ if TYPE_CHECKING:
     from magshell.equations.discretisation import Discretisation
     from magshell.solver.critical import CriticalPoint
     from magshell.solver.events import Iteration
-    from magshell.solver.path import Path, Step
+    from magshell.solver.path import Path
     from magshell.solver.settings import Settings
+    from magshell.solver.step import Step
 
 
 class KernelMessages(logging.Handler):

@@ -11,7 +11,7 @@ import pathlib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from magshell import __version__, problem
+from magshell import problem
 from magshell.errors import InputError
 from magshell.files import first_line, naming, refuse_somebodys, refuse_to_replace, write_atomically
 from magshell.output import checkpoint, step_checks
@@ -24,8 +24,10 @@ from magshell.problem import copies
 from magshell.problem.building import Problem
 from magshell.solver import Observer, Path
 from magshell.solver.newton import StepFailure
-from magshell.solver.waypoint import Waypoint, path_through
+from magshell.solver.retracing import path_through
+from magshell.solver.waypoint import Waypoint
 from magshell.units import shortened
+from magshell.version import __version__
 
 PROBLEM = "problem.toml"
 WRITTEN = (

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 import magshell as ms
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
 from magshell.linalg.ordering import nested_dissection
 from magshell.mesh import Mesh
 from magshell.shell.state import State
-from magshell.solver.path import Path, Step
+from magshell.solver.path import Path
+from magshell.solver.step import Step
 
 LENGTH, WIDTH = 0.1, 0.1
 FIELD = 50e-3

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 import magshell as ms
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
 from magshell.linalg import make_solver, nested_dissection
 
 MU, SMALL = 1.0, 1e-6

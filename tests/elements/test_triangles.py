@@ -13,7 +13,7 @@ import scipy.linalg
 
 import magshell as ms
 from elements.linear import SMALL, respond, rubber
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
 from magshell.linalg import nested_dissection
 from magshell.mesh import Mesh, split
 from magshell.model.loads.distribution import nodal_areas

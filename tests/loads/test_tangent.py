@@ -15,7 +15,7 @@ from solver.models import LENGTH, THICKNESS, central_difference, equation_number
 import magshell as ms
 from loads.bodies import arm, grouped
 from magshell import Settings, solve
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
 from magshell.linalg import make_solver, nested_dissection
 from magshell.model.supports import Condition
 from magshell.shell.state import State

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import magshell as ms
 from magnetics.test_remanence_fields import integration_points
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
 from magshell.errors import InputError
 from magshell.magnetics import remanence
 from magshell.magnetics.remanence import Fold

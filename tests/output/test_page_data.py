@@ -95,7 +95,7 @@ def test_no_number_of_the_page_is_not_finite(path, monkeypatch):
     broken = np.linspace(0, 1, len(path.discretisation.mesh.elements))
     broken[::3] = np.nan
     monkeypatch.setitem(
-        outputs._OUTPUTS, "energy", Output("energy", "W", "J", "Broken.", "cell", 1, lambda d, state: broken)
+        outputs.OUTPUTS, "energy", Output("energy", "W", "J", "Broken.", "cell", 1, lambda d, state: broken)
     )
     text = page(path)
     assert not re.search(r"\b(NaN|Infinity)\b", json.dumps(header(text)))
@@ -185,7 +185,7 @@ def test_new_output_appears_everywhere(path, tmp_path, monkeypatch, can_draw):
     height = Output(
         "height", "H", "m", "Height over the ground.", "point", 1, lambda d, state: d.mesh.points[:, 2] + state.u[:, 2]
     )
-    monkeypatch.setitem(outputs._OUTPUTS, height.name, height)
+    monkeypatch.setitem(outputs.OUTPUTS, height.name, height)
     file = grid(path.discretisation, path.steps[-1])
     np.testing.assert_array_equal(file.point_data["height"], height.evaluate(path.discretisation, path.steps[-1].state))
     text = page(path, color="H")

@@ -8,7 +8,7 @@ from battery import PATCHES, TRIANGULAR, Unsupported, each_mesh, for_element
 from scipy.spatial.transform import Rotation
 
 import magshell as ms
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
 
 
 def classical(youngs_modulus, poissons_ratio):

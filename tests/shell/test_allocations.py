@@ -24,7 +24,7 @@ from solver.models import strip
 
 import magshell as ms
 from magshell.compiled import Kernel, inline
-from magshell.equations.assembly import Discretisation, InvertedElement
+from magshell.equations.discretisation import Discretisation, InvertedElement
 from magshell.magnetics.law import forces_of
 from magshell.materials.law import stresses_of
 from magshell.materials.tensors import inverse_transpose

@@ -9,7 +9,7 @@ import numpy as np
 
 import magshell as ms
 from magshell import Model, Observer, Path, Step
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
 from magshell.linalg import make_solver
 from magshell.shell.state import State
 

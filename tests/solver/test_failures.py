@@ -7,7 +7,7 @@ import pytest
 
 import magshell as ms
 from magshell import InputError, Settings, SolveError, solve
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
 from magshell.linalg import SingularMatrix, make_solver, nested_dissection
 from magshell.solver.newton import StepFailure, System, Trial, newton
 from solver.models import LENGTH, Record, contents, equation_numbers, rubber, strip

@@ -11,7 +11,7 @@ import pytest
 import magshell as ms
 from magshell import Model
 from magshell.cli import main
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
 from magshell.linalg import make_solver, nested_dissection
 from magshell.linalg.multifrontal.solver import Multifrontal, MultifrontalFactors
 from magshell.solver.memory import PER_ENTRY, Need, memory_free, need_of

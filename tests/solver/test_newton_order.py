@@ -15,7 +15,7 @@ import pytest
 
 import magshell as ms
 from magshell import Settings, UniformField, solve
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
 from magshell.linalg import make_solver, nested_dissection
 from magshell.magnetics import laws
 from magshell.shell.elements import ELEMENTS

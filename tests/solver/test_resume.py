@@ -11,7 +11,8 @@ import magshell as ms
 from magshell import Model, Observer, Settings, Stage
 from magshell.output.checkpoint import CheckpointWriter, Origin, content, read_step, step_files
 from magshell.solver import resume
-from magshell.solver.waypoint import Waypoint, path_through
+from magshell.solver.retracing import path_through
+from magshell.solver.waypoint import Waypoint
 from solver.arches import arch, to_the_crown_at
 from solver.models import Record, strip
 from solver.test_branching import along, buckling

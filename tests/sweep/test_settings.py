@@ -13,13 +13,14 @@ from problem_files import LOADED, STRIP, changed
 from magshell.errors import InputError
 from magshell.problem import examples, load, schema
 from magshell.problem.alternatives import MOST_VALUES, read_changes, read_setting, read_settings, value_of
-from magshell.problem.changes import VECTORS, put
 from magshell.problem.changes import changed as with_values
+from magshell.problem.changes import put, vectors
 from magshell.problem.fields import (
     AccelerationVector,
     FluxVector,
     ForceVector,
     MomentVector,
+    NodalValue,
     StressVector,
 )
 from magshell.problem.reading import Source, check, find, parse
@@ -125,17 +126,18 @@ def test_a_magnitude_of_a_load() -> None:
 
 
 def test_every_vector_with_a_unit_takes_a_magnitude() -> None:
-    vectors = {FluxVector, ForceVector, MomentVector, StressVector, AccelerationVector}
+    kinds = {FluxVector, ForceVector, MomentVector, StressVector, AccelerationVector, NodalValue}
     tables = [getattr(schema, name) for name in schema.__all__]
+    for described in (schema.load_tables, schema.remanence_tables, schema.support_tables):
+        tables += described().values()
     tables = [table for table in tables if hasattr(table, "__annotations__") and hasattr(table, "model_fields")]
     found = {
         key
         for table in tables
         for key, kind in typing.get_type_hints(table, include_extras=True).items()
-        if kind in vectors or any(part in vectors for part in typing.get_args(kind))
+        if kind in kinds or any(part in kinds for part in typing.get_args(kind))
     }
-    assert found <= set(VECTORS)
-    assert set(VECTORS) - found == {"value"}, "of a prescribed field"
+    assert found == vectors()
 
 
 def test_stops_beyond_the_end_are_left_out() -> None:

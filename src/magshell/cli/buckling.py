@@ -8,7 +8,7 @@ import pathlib
 from magshell.cli.console import complain, console, say, say_doubts, say_picture
 from magshell.cli.folders import made
 from magshell.cli.status import NOT_SOLVED, SOLVED
-from magshell.errors import SolveError
+from magshell.solver.path import SolveError
 from magshell.units import ANGLE, FLUX_DENSITY, show
 
 ABOUT = "estimate the loads at which a problem buckles, and the modes"

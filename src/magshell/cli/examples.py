@@ -25,7 +25,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """List, or copy."""
-    from magshell.problem import examples, read
+    from magshell.problem import examples
+    from magshell.problem.reading import parse
 
     out = console()
     if given.copy is None and given.dest is not None:
@@ -33,7 +34,7 @@ def run(given: argparse.Namespace) -> int:
     if given.copy is None:
         width = max(map(len, examples.names()))
         for name in examples.names():
-            say(out, f"{name:<{width}}  {read(name)[1].title}")
+            say(out, f"{name:<{width}}  {parse(examples.text(name), name).get('title', '')}")
         return SOLVED
     content = examples.text(given.copy)
     target = pathlib.Path(given.dest or ".")

@@ -13,7 +13,8 @@ from magshell.cli.work import bar
 from magshell.errors import InputError
 
 if TYPE_CHECKING:
-    from magshell.solver.path import Path, Step
+    from magshell.solver.path import Path
+    from magshell.solver.step import Step
 
 ABOUT = "draw a results folder: curves, shapes, an animation"
 EXAMPLES = """

@@ -17,7 +17,8 @@ from magshell.cli.folders import made
 from magshell.cli.memory import say_memory
 from magshell.cli.mesh import say_origin
 from magshell.cli.status import INTERRUPTED, NOT_SOLVED, SOLVED
-from magshell.errors import InputError, SolveError, lacks_memory
+from magshell.errors import InputError, lacks_memory
+from magshell.solver.path import SolveError
 from magshell.units import LENGTH, show
 
 if TYPE_CHECKING:

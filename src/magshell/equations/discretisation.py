@@ -95,7 +95,7 @@ class Discretisation:
         self._insertion = Insertion(self.numbering, model.constraints)
         self.shell.place(self.numbering, model.constraints)
         self.loads.place(self._insertion)
-        self._noise = sum(term.noise() for term in self.terms)
+        self._noise = np.sum([term.noise() for term in self.terms], axis=0)
 
     @property
     def normals(self) -> FloatArray:
@@ -127,13 +127,13 @@ class Discretisation:
         if insertion is not None:
             insertion.data[:] = 0.0
         parts = [term.evaluate(instant, STATIC, insertion, imposed) for term in self.terms]
-        residual = sum(part.residual for part in parts)
+        residual = np.sum([part.residual for part in parts], axis=0)
         right_side = np.zeros(self.dofs)
         if tangent:
-            condensed = sum(part.condensed for part in parts)
+            condensed = np.sum([part.condensed for part in parts], axis=0)
             right_side[self.numbering.equations] = -condensed[self.free]
-        squares = sum(part.scale for part in parts)
-        inner = sum(part.inner for part in parts)
+        squares = np.sum([part.scale for part in parts], axis=0)
+        inner = max(part.inner for part in parts)
         matrix = self._insertion.matrix if tangent else None
         return Assembly(matrix, right_side, residual, self._relative(residual, squares, inner))
 
@@ -144,7 +144,7 @@ class Discretisation:
         nothing imposed.
         """
         direction = np.zeros(self.dofs)
-        change = sum(term.load_rate(instant, rate) for term in self.terms)
+        change = np.sum([term.load_rate(instant, rate) for term in self.terms], axis=0)
         direction[self.numbering.equations] = -change[self.free]
         if np.any(rate.held):
             moving = self.assemble(instant, self.imposed(rate.held)).right_side
@@ -209,7 +209,7 @@ class Discretisation:
         pure bending; they count for no less than the moments over the body's size.
         """
         free = np.where(self.free, residual, 0.0)
-        norms = np.sqrt([*(np.vdot(free[:, columns], free[:, columns]) for columns in COLUMNS.values()), inner**2])
+        norms = np.array([*(np.linalg.norm(free[:, columns]) for columns in COLUMNS.values()), inner])
         scales = np.sqrt(squares)
         scales[0] = max(scales[0], scales[1] / self.mesh.size, scales[3] / self.mesh.size)
         above = np.maximum(norms - self._noise, 0.0)

@@ -117,12 +117,12 @@ class Reached(Protocol):
     def flux_density(self) -> FloatArray:
         """T, (3,)."""
 
-    @property
-    def loads(self) -> FloatArray:
-        """Multipliers of the model's loads."""
 
+def converged(discretisation: Discretisation, reached: Reached) -> Converged:
+    """What outputs are evaluated of, at a step. (What is held is the state's.)
 
-def converged(discretisation: Discretisation, step: Reached) -> Converged:
-    """What outputs are evaluated of, at a step. (What is held is the state's.)"""
+    A critical point and a buckling mode do not keep the loads; there the residual leaves them out.
+    """
     held = np.zeros((len(discretisation.mesh.points), COMPONENTS))
-    return Converged(discretisation, step.state, Loading(step.flux_density, step.loads, held))
+    loads = getattr(reached, "loads", np.zeros(len(discretisation.model.loads)))
+    return Converged(discretisation, reached.state, Loading(reached.flux_density, loads, held))

@@ -5,20 +5,16 @@ Writers, pictures and pages all go through `OUTPUTS`, so a new quantity is one e
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
-from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
-from magshell.arrays import AnyArray, FloatArray
+from magshell.arrays import AnyArray
 from magshell.errors import InputError, suggest
-from magshell.evaluation.converged import Converged, converged
+from magshell.evaluation.converged import Converged
 from magshell.shell.point import INTERNAL
-
-if TYPE_CHECKING:
-    from magshell.solver.path import Path, Step
 
 
 @dataclass(frozen=True)
@@ -59,7 +55,7 @@ def _element_group(converged: Converged) -> AnyArray:
     return numbers
 
 
-_OUTPUTS = {
+OUTPUTS: dict[str, Output] = {
     output.name: output
     for output in (
         Output(
@@ -145,20 +141,7 @@ _OUTPUTS = {
         ),
     )
 }
-OUTPUTS = MappingProxyType(_OUTPUTS)
-
-
-def without_round_off(path: Path, output: Output, steps: Iterable[Step]) -> Iterator[FloatArray]:
-    """An output at each step; what is nothing but rounding is zero.
-
-    That is 1e-9 of its largest component where the path is farthest from rest.
-    """
-    farthest = max(path.steps, key=lambda step: float(np.abs(step.state.u).max()))
-    noise = 1e-9 * float(np.abs(output.evaluate(converged(path.discretisation, farthest))).max())
-    for step in steps:
-        values = np.array(output.evaluate(converged(path.discretisation, step)), dtype=float)
-        values[np.abs(values) <= noise] = 0.0
-        yield values
+"""The quantities, by name, in the order of the files."""
 
 
 def find(name: str) -> tuple[Output, int | None]:

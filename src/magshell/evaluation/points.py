@@ -65,7 +65,7 @@ def micropolar_stretch(fields: PointFields) -> FloatArray:
 
 
 def of_materials(reference: Reference, materials: Sequence[Material], U: FloatArray) -> tuple[FloatArray, ...]:
-    """Energy (e, p, k), stress (e, p, k, 3, 3) and tangent (e, p, k, 3, 3, 3, 3) of the laws that hold at the points."""
+    """Energy (e, p, k), stress (..., 3, 3) and tangent (..., 3, 3, 3, 3) of the laws that hold at the points."""
     made = reference.body.levels["material"]
     W, P, C = np.empty(made.shape), np.empty((*made.shape, 3, 3)), np.empty((*made.shape, 3, 3, 3, 3))
     for number, material in enumerate(materials):

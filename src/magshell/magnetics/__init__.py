@@ -1,13 +1,20 @@
-"""Magnetics: remanence, external field, and the laws that couple them, one per file."""
+"""Magnetics: the external field and the laws that couple it with the remanence, one per file; `remanence/`."""
 
-from magshell.magnetics import remanence
 from magshell.magnetics.deformation_gradient_energy import DeformationGradientEnergy
 from magshell.magnetics.field import UniformField
 from magshell.magnetics.law import Coupling, is_conservative, laws
 from magshell.magnetics.micro_rotation_energy import MicroRotationEnergy
 from magshell.magnetics.micropolar_couple import MicropolarCouple
 
+COUPLINGS: dict[str, type[Coupling]] = {
+    "couple": MicropolarCouple,
+    "micro-rotation": MicroRotationEnergy,
+    "deformation-gradient": DeformationGradientEnergy,
+}
+"""The coupling laws that problem files know, by their names there."""
+
 __all__ = [
+    "COUPLINGS",
     "Coupling",
     "DeformationGradientEnergy",
     "MicroRotationEnergy",
@@ -15,5 +22,4 @@ __all__ = [
     "UniformField",
     "is_conservative",
     "laws",
-    "remanence",
 ]

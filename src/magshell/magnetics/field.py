@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
-from magshell.model.history import numbers
+from magshell.multipliers import numbers
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,11 +17,12 @@ Tangent, with B = U Uᵀ and dV_pj / dU_ql = -V_pl V_qj:
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from magshell.arrays import FloatArray
+from magshell.keys import Key
 from magshell.materials.law import material_law
 from magshell.materials.tensors import inverse_transpose
 
@@ -83,7 +84,9 @@ class MicropolarMooneyRivlin(NamedTuple):
     lame_lambda: float
     coupling_modulus: float
     length_scale: float
-    second_invariant_share: float = 0.25
+    second_invariant_share: Annotated[
+        float, Key("Number", "Part of $\\mu$ carried by the second invariant, in [0, 1).")
+    ] = 0.25
 
     @property
     def couple_modulus(self) -> float:

@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray, IntArray
+from magshell.drawing import drawing
 from magshell.errors import InputError, suggest
 from magshell.mesh.checks import (
     check_connectivity,
@@ -102,9 +103,7 @@ class Mesh:
         return quadrilaterals + f"{triangles} triangles"
 
     def _repr_html_(self) -> str:
-        from magshell.output.notebook import mesh_html
-
-        return mesh_html(self)
+        return str(drawing("mesh_html")(self))
 
     @cached_property
     def _edges(self) -> Edges:

@@ -12,19 +12,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from magshell.arrays import FloatArray
+from magshell.drawing import drawing
 from magshell.errors import InputError, NothingLoads, suggest
 from magshell.magnetics.deformation_gradient_energy import DeformationGradientEnergy
 from magshell.magnetics.field import UniformField
 from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.model import symmetry
 from magshell.model.course import Amounts, Course, Loading
-from magshell.model.history import amplitudes
 from magshell.model.loads import Applied, Load
-from magshell.model.loads.checks import label
 from magshell.model.rigid import check_supported
 from magshell.model.shell import Shell
 from magshell.model.stages import Stage
 from magshell.model.supports import Constraints, Support, SymmetryPlane, resolve
+from magshell.multipliers import amplitudes
 from magshell.shell.normals import nodal_normals
 from magshell.shell.state import State
 
@@ -111,9 +111,7 @@ class Model:
         return "\n  ".join([f"Model({len(self.stages)} stages, {len(self.probes)} probes)", *map(repr, parts)])
 
     def _repr_html_(self) -> str:
-        from magshell.output.notebook import model_html
-
-        return model_html(self)
+        return str(drawing("model_html")(self))
 
     def _check_targets(self) -> None:
         for stage in self.stages:
@@ -128,7 +126,7 @@ class Model:
     def _check_the_micro_rotation_matters(self) -> None:
         if self.shell.material.coupling_modulus > 0.0:
             return
-        if any(np.any(forces[:, 7:]) for forces in self._forces_at_rest()):
+        if any(np.any(forces[:, 7:]) for forces in self.forces_at_rest):
             worker = "a moment"
         elif any(one.pairs is not None and one.pairs.column_field == "omega" for one in self.applied):
             worker = "a follower"
@@ -152,10 +150,12 @@ class Model:
         if not np.any(self.shell.remanence_at_points):
             raise NothingLoads(f"remanence: it is zero everywhere {otherwise}")
 
-    def _forces_at_rest(self) -> list[FloatArray]:
+    @cached_property
+    def forces_at_rest(self) -> tuple[FloatArray, ...]:
+        """Forces (nodes, 10) of each load on the undeformed shell, at multiplier 1."""
         nodes = len(self.shell.mesh.points)
         state = State.undeformed(nodes, len(self.shell.mesh.elements), self.shell.element.vectors)
-        return [applied.forces(state) for applied in self.applied]
+        return tuple(applied.forces(state) for applied in self.applied)
 
     def _longest_history(self) -> int:
         owners = (self.field, *self.loads, *self.supports)
@@ -171,7 +171,7 @@ class Model:
             turned[1:] = amplitudes(self.field.rotation, count, "field: rotation")
         loads = np.zeros((count + 1, len(self.loads)))
         for number, load in enumerate(self.loads):
-            loads[1:, number] = amplitudes(load.history, count, label(load))
+            loads[1:, number] = amplitudes(load.history, count, load.label)
         held = np.concatenate([np.zeros_like(self.constraints.values[:1]), self.constraints.values])
         return tuple(Amounts(float(field[k]), float(turned[k]), loads[k], held[k]) for k in range(count + 1))
 

@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol, TypeAlias
+from typing import ClassVar, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError, suggest
+from magshell.keys import HISTORY, Key
 from magshell.mesh import Mesh
-from magshell.model.history import amplitudes
+from magshell.multipliers import amplitudes
 from magshell.shell.unknowns import COLUMNS
+from magshell.units import ANGLE, INVERSE_LENGTH, LENGTH, NUMBER
+from magshell.wording import quantity, vector
 
 FIELDS = tuple(COLUMNS)
+DIMENSION_OF_FIELD = {"u": LENGTH, "w": NUMBER, "phi": INVERSE_LENGTH, "omega": ANGLE}
+GROUP = Key("Name", "Group of edges, nodes or elements whose nodes are held.")
 AXES = np.eye(3)
 
 
@@ -33,15 +39,40 @@ class Condition(NamedTuple):
     history: Sequence[float] | None = None
 
 
-class Support(Protocol):
-    """Anything that gives conditions."""
+class Support(ABC):
+    """Anything that gives conditions: a frozen dataclass that inherits from this class.
 
-    @property
-    def group(self) -> str:
-        """Group of nodes, edges or elements whose nodes are held."""
+    Attributes
+    ----------
+    kind : str
+        Its name in problem files.
+    keys : mapping of str to Key
+        Its parameters.
+    mark : {"balls", "cubes"}
+        How it is drawn.
+    group : str
+        Group of nodes, edges or elements whose nodes are held.
+    """
 
+    kind: ClassVar[str]
+    keys: ClassVar[Mapping[str, Key]]
+    mark: ClassVar[Literal["balls", "cubes"]] = "balls"
+
+    group: str
+
+    @abstractmethod
     def conditions(self) -> Iterator[Condition]:
         """The conditions."""
+
+    @property
+    def words(self) -> str:
+        """The support in `magshell check`."""
+        return self.kind
+
+    @property
+    def name(self) -> str:
+        """The support in pictures."""
+        return self.kind
 
 
 def _numbers(group: str, name: str, value: ArrayLike) -> FloatArray:
@@ -57,8 +88,12 @@ def _fixed(group: str, field: str) -> Iterator[Condition]:
 
 
 @dataclass(frozen=True)
-class Clamp:
+class Clamp(Support):
     """u = 0, w = 0 and no rotation; the thickness stretch φ stays free."""
+
+    kind: ClassVar[str] = "clamp"
+    keys: ClassVar[Mapping[str, Key]] = {"group": GROUP}
+    mark: ClassVar[Literal["balls", "cubes"]] = "cubes"
 
     group: str
 
@@ -69,10 +104,18 @@ class Clamp:
 
 
 @dataclass(frozen=True)
-class SimpleSupport:
+class SimpleSupport(Support):
     """u = 0; the section may turn."""
 
+    kind: ClassVar[str] = "simple"
+    keys: ClassVar[Mapping[str, Key]] = {"group": GROUP}
+
     group: str
+
+    @property
+    def name(self) -> str:
+        """In pictures."""
+        return "simple support"
 
     def conditions(self) -> Iterator[Condition]:
         """Three per node."""
@@ -80,11 +123,19 @@ class SimpleSupport:
 
 
 @dataclass(frozen=True)
-class SymmetryPlane:
+class SymmetryPlane(Support):
     """Mirror plane with the given normal: u · n = 0, w · n = 0, and rotation about n only."""
+
+    kind: ClassVar[str] = "symmetry"
+    keys: ClassVar[Mapping[str, Key]] = {"group": GROUP, "normal": Key("Direction", "Of the mirror plane.")}
 
     group: str
     normal: ArrayLike
+
+    @property
+    def words(self) -> str:
+        """With the normal."""
+        return f"{self.kind}, normal {vector(np.ravel(self.normal))}"
 
     @property
     def unit_normal(self) -> FloatArray:
@@ -115,7 +166,7 @@ class SymmetryPlane:
 
 
 @dataclass(frozen=True)
-class Prescribe:
+class Prescribe(Support):
     """A value for a field, or one component of it.
 
     Parameters
@@ -132,11 +183,35 @@ class Prescribe:
         Multiplier of the value at the end of each stage of the path; by default it grows to 1 in the first and stays.
     """
 
+    kind: ClassVar[str] = "prescribe"
+    keys: ClassVar[Mapping[str, Key]] = {
+        "group": GROUP,
+        "field": Key(
+            "NodalField",
+            "Displacement (length), director displacement (number), thickness stretch (1/length), rotation (angle).",
+        ),
+        "component": Key("Component", "Along $X_1$, $X_2$ or $X_3$; left out: all three."),
+        "value": Key("NodalValue", "One value, or three where all components are meant."),
+        "history": HISTORY,
+    }
+
     group: str
     field: str
     component: int | None = None
     value: ArrayLike = 0.0
     history: Sequence[float] | None = None
+
+    @property
+    def words(self) -> str:
+        """With the value."""
+        given = tuple(np.atleast_1d(np.asarray(self.value, dtype=float)).tolist())
+        value = quantity(given if len(given) > 1 else given[0], DIMENSION_OF_FIELD[self.field])
+        return f"{self.kind} {self.field}{self.component or ''} = {value}"
+
+    @property
+    def name(self) -> str:
+        """In pictures."""
+        return f"{self.field}{self.component or ''} given"
 
     def conditions(self) -> Iterator[Condition]:
         """One per component."""
@@ -161,6 +236,11 @@ class Prescribe:
         for axis, component in zip(AXES, np.broadcast_to(value, 3), strict=True):
             yield Condition(self.group, self.field, axis, float(component), False, self.history)
 
+
+SUPPORTS: dict[str, type[Support]] = {
+    support.kind: support for support in (Clamp, SimpleSupport, SymmetryPlane, Prescribe)
+}
+"""The supports that problem files know, by their kind."""
 
 Supports: TypeAlias = Sequence[Support]
 

@@ -3,29 +3,29 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
+from magshell.magnetics.field import UniformField
 from magshell.mesh import Mesh
 from magshell.mesh.geometry import COINCIDENT
-from magshell.model.loads import Force, Gravity, Load, Moment, Traction
+from magshell.model.course import Course
+from magshell.model.loads import Load
 from magshell.model.reflection import angle_to_plane, in_plane, is_normal
-from magshell.model.supports import SymmetryPlane
+from magshell.model.shell import Shell
+from magshell.model.stages import Stage
+from magshell.model.supports import Support, SymmetryPlane
 from magshell.shell.normals import nodal_normals
-from magshell.units import ACCELERATION, FLUX_DENSITY, FORCE, MOMENT, STRESS, Dimension, show
-
-if TYPE_CHECKING:
-    from magshell.model.model import Model
+from magshell.units import FLUX_DENSITY, Dimension, show
 
 logger = logging.getLogger(__name__)
 
 MIRRORED, REVERSED = 1, -1
 # Degrees by which a coarse curved mesh may miss a right angle between shell and plane.
 FOLD = 15.0
-JUMP = "beyond it acts the image, with the component along the normal reversed"
 WHOLE = "Model the whole part, or choose other planes"
 
 
@@ -37,7 +37,23 @@ class Plane(NamedTuple):
     nodes: IntArray
 
 
-def planes(model: Model) -> list[Plane]:
+class Mirrored(Protocol):
+    """What is asked of a model here."""
+
+    @property
+    def shell(self) -> Shell: ...
+    @property
+    def supports(self) -> Sequence[Support]: ...
+    @property
+    def field(self) -> UniformField: ...
+    @property
+    def loads(self) -> Sequence[Load]: ...
+    @property
+    def stages(self) -> Sequence[Stage]: ...
+    def course(self, stage: int) -> Course: ...
+
+
+def planes(model: Mirrored) -> list[Plane]:
     """The mirror planes of a model."""
     mesh = model.shell.mesh
     return [
@@ -47,7 +63,7 @@ def planes(model: Model) -> list[Plane]:
     ]
 
 
-def remanence_sign(model: Model, plane: Plane) -> int | None:
+def remanence_sign(model: Mirrored, plane: Plane) -> int | None:
     """How the other half must be magnetised: `MIRRORED` or `REVERSED` (mirrored and reversed); None: in no way.
 
     Without a field or without remanence it is `MIRRORED`, and nothing depends on it.
@@ -58,7 +74,7 @@ def remanence_sign(model: Model, plane: Plane) -> int | None:
     return REVERSED if all(is_normal(vector, plane.normal) for vector in fields) else None
 
 
-def broken(model: Model) -> list[str]:
+def broken(model: Mirrored) -> list[str]:
     """What breaks the model's mirror planes, in sentences: the plane, what breaks it and what would be right."""
     found = []
     for plane in planes(model):
@@ -95,7 +111,7 @@ def _of_place(mesh: Mesh, plane: Plane) -> Iterator[str]:
         )
 
 
-def _of_field(model: Model, plane: Plane) -> Iterator[str]:
+def _of_field(model: Mirrored, plane: Plane) -> Iterator[str]:
     """A field that is neither in the plane nor normal to it, or now this and now that."""
     if not np.any(model.shell.remanence_at_points) or remanence_sign(model, plane) is not None:
         return
@@ -121,7 +137,7 @@ def _of_field(model: Model, plane: Plane) -> Iterator[str]:
     )
 
 
-def _fields(model: Model) -> Iterator[tuple[int, FloatArray]]:
+def _fields(model: Mirrored) -> Iterator[tuple[int, FloatArray]]:
     """Stage and flux density (3,) at multiplier 1 of all fields of the path.
 
     Of one that turns there are three, which are in the plane (normal to it) only if all on the way are.
@@ -136,35 +152,23 @@ def _fields(model: Model) -> Iterator[tuple[int, FloatArray]]:
                 yield number, model.field.turned(angle)
 
 
-def _of_loads(model: Model, plane: Plane) -> Iterator[str]:
+def _of_loads(model: Mirrored, plane: Plane) -> Iterator[str]:
     """Weight and loads in the plane that are not their own image, and loads of an area that jump there."""
     mesh = model.shell.mesh
     for load in model.loads:
-        name = load.kind if load.group is None else f"{load.kind} on '{load.group}'"
-        match load:
-            case Moment() if _acts_in(mesh, load, plane):
-                vector = np.array(load.total, dtype=float)
-                if not is_normal(vector, plane.normal):
-                    off = 90.0 - angle_to_plane(vector, plane.normal)
-                    yield (
-                        f"{name} {_shown(vector, MOMENT)} is {off:.3g}° off the normal of the plane, whose support "
-                        f"takes all the rest. {WHOLE}"
-                    )
-                continue
-            case Gravity():
-                given, dimension, effect = load.acceleration, ACCELERATION, "the other half would weigh another way"
-            case Force() if _acts_in(mesh, load, plane):
-                given, dimension, effect = load.total, FORCE, "its support takes what is normal to it"
-            case Force() if _ends_at(mesh, load, plane):
-                given, dimension, effect = load.total, FORCE, JUMP
-            case Traction() if _ends_at(mesh, load, plane):
-                given, dimension, effect = load.traction, STRESS, JUMP
-            case _:
-                continue
-        vector = np.array(given, dtype=float)
-        if not in_plane(vector, plane.normal):
-            off = angle_to_plane(vector, plane.normal)
-            yield f"{name} {_shown(vector, dimension)} is {off:.3g}° off the plane: {effect}. {WHOLE}"
+        at_nodes, at_elements = _acts_in(mesh, load, plane), _ends_at(mesh, load, plane)
+        effect, vector = load.beyond(at_nodes, at_elements), load.vector
+        if vector is None or not effect:
+            continue
+        given = load.kind if load.group is None else f"{load.kind} on '{load.group}'"
+        given += f" {_shown(vector, load.amount[1])}"
+        off = angle_to_plane(vector, plane.normal)
+        if not load.axial and not in_plane(vector, plane.normal):
+            yield f"{given} is {off:.3g}° off the plane: {effect}. {WHOLE}"
+        if load.axial and at_nodes and not is_normal(vector, plane.normal):
+            yield (
+                f"{given} is {90.0 - off:.3g}° off the normal of the plane, whose support takes all the rest. {WHOLE}"
+            )
 
 
 def _acts_in(mesh: Mesh, load: Load, plane: Plane) -> bool:

@@ -29,7 +29,8 @@ from magshell.output.tessellation import Tessellation
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-    from magshell.solver.path import Path, Step
+    from magshell.solver.path import Path
+    from magshell.solver.step import Step
 
 FILM_DPI = 100
 SECONDS, HELD = 4.0, 1.5

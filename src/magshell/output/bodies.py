@@ -25,7 +25,8 @@ from magshell.output.tessellation import Tessellation, element_edges
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh
-    from magshell.solver.path import Path, Step
+    from magshell.solver.path import Path
+    from magshell.solver.step import Step
 
 PIECES = 6
 

@@ -14,7 +14,7 @@ from magshell.files import csv_line, first_line, refuse_somebodys, write_atomica
 from magshell.output.critical import write_mode
 from magshell.output.rendering import attempted
 from magshell.output.shape import draw_shape
-from magshell.solver.path import Step
+from magshell.solver.step import Step
 
 if TYPE_CHECKING:
     from magshell.solver.buckling import Buckling, BucklingMode

@@ -21,7 +21,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-import magshell
 from magshell.equations.instant import Increment
 from magshell.errors import InputError
 from magshell.evaluation.balance import Balance
@@ -30,10 +29,12 @@ from magshell.output.archive import Unfit, digest, read_arrays
 from magshell.shell.state import State
 from magshell.solver.critical import CriticalPoint
 from magshell.solver.events import Observer
-from magshell.solver.path import Path, Step
+from magshell.solver.path import Path
+from magshell.solver.step import Step
 from magshell.solver.track import Slope
 from magshell.solver.waypoint import Waypoint
 from magshell.units import shortened
+from magshell.version import __version__
 
 if TYPE_CHECKING:
     from magshell.equations.discretisation import Discretisation
@@ -99,7 +100,7 @@ class CheckpointWriter(Observer):
     def kept(self, path: Path) -> None:
         """Write the step that has just converged."""
         waypoint = path.trail[-1]
-        origin = Origin(magshell.__version__, self._problem, asdict(path.settings))
+        origin = Origin(__version__, self._problem, asdict(path.settings))
         write_atomically(self.folder / step_name(waypoint.step.number), content(waypoint, origin), durably=True)
 
 

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
     from magshell.solver.critical import CriticalPoint
-    from magshell.solver.path import Path, Step
+    from magshell.solver.path import Path
+    from magshell.solver.step import Step
 
 NEGLIGIBLE = 0.01
 FIELD = r"$|B^\mathrm{ext}|$ (mT)"

@@ -11,8 +11,9 @@ from magshell.solver.events import Observer
 
 if TYPE_CHECKING:
     from magshell.equations.discretisation import Discretisation
-    from magshell.solver.path import Path, Step
+    from magshell.solver.path import Path
     from magshell.solver.settings import Settings
+    from magshell.solver.step import Step
 
 ABOUT = ("stage", "arc_length", "negative_pivots")
 

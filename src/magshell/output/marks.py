@@ -10,19 +10,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
-from magshell.mesh.geometry import unit
-from magshell.model.loads import Force, Gravity, Moment, Pressure, Traction
-from magshell.model.supports import Clamp, Prescribe, SimpleSupport, Support, SymmetryPlane
+from magshell.mesh.geometry import centres, unit
 from magshell.output.style import ACCENT, COLOURS, INK
-from magshell.units import ACCELERATION, FLUX_DENSITY, FORCE, MOMENT, STRESS, show
+from magshell.units import FLUX_DENSITY, show
 
 if TYPE_CHECKING:
-    from magshell.model.loads import Load
     from magshell.model.model import Model
 
 REMANENCE, LOAD, SUPPORTS = COLOURS[0], COLOURS[3], (COLOURS[2], COLOURS[4], COLOURS[6], COLOURS[5])
 MOST_ARROWS = 110
 MOST_POSTS = 40
+MOST_OF_A_LOAD = 12
 EVENING = 8
 LONGEST, SHORTEST = 0.11, 0.03
 """Length of an arrow over the size of the part."""
@@ -127,12 +125,12 @@ def remanence_marks(model: Model, shown: FloatArray, axes: FloatArray, template:
     from magshell.magnetics.remanence.template import carried
 
     mesh = model.shell.mesh
-    centres = _middle(mesh.points[mesh.elements])[:, None]
-    vectors = (carried if template else _released)(model.shell.remanence, mesh, centres)[:, 0]
+    middle = centres(mesh.points, mesh.elements)[:, None]
+    vectors = (carried if template else _released)(model.shell.remanence, mesh, middle)[:, 0]
     sizes = np.linalg.norm(vectors, axis=1)
     if not sizes.any():
         return []
-    middles = _middle(shown)
+    middles = 0.5 * shown[:, 4:].sum(axis=1) - 0.25 * shown[:, :4].sum(axis=1)
     normals = np.cross(shown[:, 2] - shown[:, 0], shown[:, 3] - shown[:, 1])
     area = 0.5 * np.linalg.norm(normals, axis=1)
     normals = unit(normals) * np.where(normals @ axes[2] < 0.0, -1.0, 1.0)[:, None]
@@ -153,11 +151,6 @@ def remanence_marks(model: Model, shown: FloatArray, axes: FloatArray, template:
 
 def _released(remanence: Any, mesh: Any, points: FloatArray) -> FloatArray:
     return np.asarray(remanence(mesh, points))
-
-
-def _middle(x: FloatArray) -> FloatArray:
-    """Middles (elements, 3) of elements with nodes at (elements, 8, 3)."""
-    return np.asarray(0.5 * x[:, 4:].sum(axis=1) - 0.25 * x[:, :4].sum(axis=1))
 
 
 def spread_out(points: FloatArray, most: int) -> IntArray:
@@ -217,16 +210,16 @@ def field_marks(model: Model, extent: FloatArray, axes: FloatArray) -> list[Mark
 
 
 def support_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:
-    """Cubes along clamped groups, balls along others."""
+    """Cubes or balls along the groups."""
     marks = []
     mesh = model.shell.mesh
     for number, support in enumerate(model.supports):
         nodes = mesh.nodes_of(support.group)
         nodes = nodes[spread_out(mesh.points[nodes], MOST_POSTS)]
         width = min(0.016 * size, 0.7 * _closest(mesh.points[nodes]))
-        solids = Solids.CUBES if isinstance(support, Clamp) else Solids.BALLS
+        solids = Solids[support.mark.upper()]
         wider = width if solids is Solids.CUBES else 0.85 * width
-        name = f"{support.group}: {_kind(support)}"
+        name = f"{support.group}: {support.name}"
         colour = SUPPORTS[number % len(SUPPORTS)]
         marks.append(Mark(name, colour, solids, mesh.points[nodes] + 0.3 * width * axes[2], width=wider))
     return marks
@@ -239,61 +232,24 @@ def _closest(points: FloatArray) -> float:
     return float(np.asarray(cKDTree(points).query(points, k=2)[0])[:, 1].mean()) if len(points) > 1 else np.inf
 
 
-def _kind(support: Support) -> str:
-    match support:
-        case Clamp():
-            return "clamp"
-        case SimpleSupport():
-            return "simple support"
-        case SymmetryPlane():
-            return "symmetry"
-        case Prescribe():
-            return f"{support.field}{support.component or ''} given"
-    return type(support).__name__
-
-
 def load_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:
     """One arrow for forces, moments and weight, several for what is spread; away from the eye they end on the part."""
     marks = []
-    for load in model.loads:
-        places, vector, name, letter = _load(model, load)
-        longest = float(np.linalg.norm(vector, axis=1).max())
+    for load, forces in zip(model.loads, model.forces_at_rest, strict=True):
+        places, vector, name = load.arrows(model.shell, forces)
+        chosen = spread_out(places, MOST_OF_A_LOAD)
+        places, vector = places[chosen], vector[chosen]
+        longest = float(np.linalg.norm(vector, axis=1).max(initial=0.0))
         if longest == 0.0:
             continue
         drawn = (0.14 if len(places) == 1 else 0.07) * size * vector / longest
         away = drawn @ axes[2] < 0.0
         tails = places - np.where(away[:, None], drawn, 0.0)
         letter_at = tails[0] - 0.2 * drawn[0] if away[0] else tails[0] + 1.2 * drawn[0]
-        marks.append(Mark(name, LOAD, Solids.ARROWS, tails + 0.5 * drawn, drawn, letters=[(letter, letter_at, (0, 0))]))
+        marks.append(
+            Mark(name, LOAD, Solids.ARROWS, tails + 0.5 * drawn, drawn, letters=[(load.letter, letter_at, (0, 0))])
+        )
     return marks
-
-
-def _load(model: Model, load: Load) -> tuple[FloatArray, FloatArray, str, str]:
-    """Places (n, 3), vectors (n, 3) to scale, name and letter."""
-    mesh = model.shell.mesh
-    x = mesh.points[mesh.elements]
-    if isinstance(load, Force | Moment):
-        nodes = mesh.points[mesh.nodes_of(load.group)]
-        place = nodes[np.argmin(np.linalg.norm(nodes - nodes.mean(axis=0), axis=1))][None]
-        total = np.asarray(load.total, dtype=float)
-        dimension, letter = (FORCE, "$F$") if isinstance(load, Force) else (MOMENT, "$M$")
-        return place, total[None], f"{load.group}: {load.kind}, {show(float(np.linalg.norm(total)), dimension)}", letter
-    members = np.arange(len(x)) if load.group is None else mesh.elements_of(load.group)
-    middles = _middle(x[members])
-    if isinstance(load, Gravity):
-        g = np.asarray(load.acceleration, dtype=float)
-        place = middles[np.argmin(np.linalg.norm(middles - middles.mean(axis=0), axis=1))][None]
-        return place, g[None], f"gravity, {show(float(np.linalg.norm(g)), ACCELERATION)}", "$g$"
-    chosen = spread_out(middles, 12)
-    if isinstance(load, Traction):
-        vector = np.tile(np.asarray(load.traction, dtype=float), (len(chosen), 1))
-        size, letter = float(np.linalg.norm(vector[0])), "$t$"
-    else:
-        assert isinstance(load, Pressure)
-        own = x[members[chosen]]
-        vector = np.sign(load.pressure) * unit(np.cross(own[:, 2] - own[:, 0], own[:, 3] - own[:, 1]))
-        size, letter = abs(float(load.pressure)), "$p$"
-    return middles[chosen], vector, f"{load.group}: {load.kind}, {show(size, STRESS)}", letter
 
 
 def probe_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:

@@ -121,7 +121,7 @@ def _model_rows(model: Model) -> list[tuple[str, str]]:
         field = ", ".join(show(float(value), FLUX_DENSITY) if value else "0" for value in model.field.vector)
         rows.append(("field", f"({field}), {type(model.coupling).__name__}"))
     if model.loads:
-        rows.append(("loads", _listed([f"{load.kind} on {load.group}" for load in model.loads])))
+        rows.append(("loads", _listed([f"{load.kind} on {load.group or 'whole shell'}" for load in model.loads])))
     if model.supports:
         rows.append(("supports", _listed([f"{type(one).__name__} on {one.group}" for one in model.supports])))
     if len(model.stages) > 1:

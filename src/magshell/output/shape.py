@@ -10,8 +10,9 @@ import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError
-from magshell.evaluation.outputs import Output, find, without_round_off
+from magshell.evaluation.outputs import Output, find
 from magshell.output.labels import bar_title, shown_unit
+from magshell.output.rounding import without_round_off
 from magshell.output.scene import draw
 from magshell.output.style import ACCENT, DPI, GREY, TEXT, TICKS, deliver
 from magshell.output.tessellation import Tessellation
@@ -21,7 +22,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from PIL.Image import Image
 
-    from magshell.solver.path import Path, Step
+    from magshell.solver.path import Path
+    from magshell.solver.step import Step
 
 INCHES = (10.0, 7.0)
 SCENE = (0.0, 0.0, 0.865, 0.9)

@@ -22,8 +22,9 @@ if TYPE_CHECKING:
     from magshell.equations.discretisation import Discretisation
     from magshell.solver.buckling import BucklingMode
     from magshell.solver.critical import CriticalPoint
-    from magshell.solver.path import Path, Step
+    from magshell.solver.path import Path
     from magshell.solver.settings import Settings
+    from magshell.solver.step import Step
 
 VTK_QUADRATIC_QUAD = 23
 VTK_QUADRATIC_TRIANGLE = 22

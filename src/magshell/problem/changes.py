@@ -15,9 +15,6 @@ from magshell.problem.reading import Source, parse
 from magshell.units import FLUX_DENSITY, quoted, shortened
 from magshell.units import parse as quantity
 
-VECTORS = ("flux_density", "vector", "total", "traction", "acceleration", "value")
-"""Keys of vectors: a magnitude given to one of them keeps the direction that the file says."""
-
 _PART = re.compile(r"\.?([^.\[\]]+)|\[(\d{1,6})\]")
 
 
@@ -77,10 +74,21 @@ def put(data: dict[str, Any], key: str, value: Value) -> None:
     """
     holder, leaf = _place(data, key)
     present = holder[leaf] if isinstance(holder, list) else holder.get(leaf)
-    if leaf in VECTORS and isinstance(present, list) and not isinstance(value.data, list | dict | bool):
+    if leaf in vectors() and isinstance(present, list) and not isinstance(value.data, list | dict | bool):
         holder[leaf] = _scaled(present, value)
     else:
         holder[leaf] = copy.deepcopy(value.data)
+
+
+def vectors() -> set[str]:
+    """Keys of vectors: a magnitude given to one of them keeps the direction that the file says."""
+    from magshell.magnetics.remanence import REMANENCES
+    from magshell.model.loads import LOADS
+    from magshell.model.supports import SUPPORTS
+
+    tables = [one.keys for registry in (REMANENCES, LOADS, SUPPORTS) for one in registry.values()]
+    kinds = [(key, about.kind) for keys in tables for key, about in keys.items()]
+    return {"flux_density", *(key for key, kind in kinds if kind.endswith("Vector") or kind == "NodalValue")}
 
 
 def _place(data: dict[str, Any], key: str) -> tuple[Any, Any]:

@@ -7,14 +7,17 @@ would be right; where it is wrong is added by `magshell.problem.reading`.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Any, Literal, get_args
 
-from pydantic import AfterValidator, BeforeValidator
+from pydantic import AfterValidator, BeforeValidator, StrictBool, ValidationInfo
 
 from magshell import units
 from magshell.errors import InputError, suggest
+from magshell.magnetics import COUPLINGS
+from magshell.model.supports import DIMENSION_OF_FIELD
+from magshell.shell.elements import ELEMENTS
 
 # Beyond these no shell exists; within them no product of two magnitudes overflows or vanishes.
 SMALLEST, LARGEST = 1e-12, 1e12
@@ -34,14 +37,21 @@ def _quantity(dimension: units.Dimension, unit: str | None = None) -> BeforeVali
     return BeforeValidator(partial(_read, dimension=dimension, unit=unit))
 
 
-def _positive_quantity(dimension: units.Dimension) -> BeforeValidator:
-    def read(value: object) -> float:
-        number = _read(value, dimension)
-        if number <= 0.0:
-            raise InputError(f"{units.quoted(value)} is not positive")
-        return number
+def _read_positive(value: object, dimension: units.Dimension) -> float:
+    number = _read(value, dimension)
+    if number <= 0.0:
+        raise InputError(f"{units.quoted(value)} is not positive")
+    return number
 
-    return BeforeValidator(read)
+
+def _positive_quantity(dimension: units.Dimension) -> BeforeValidator:
+    return BeforeValidator(partial(_read_positive, dimension=dimension))
+
+
+def dimension_of(kind: Any) -> units.Dimension:
+    """Of a single quantity, one of the types below."""
+    found: units.Dimension = get_args(kind)[1].func.keywords["dimension"]
+    return found
 
 
 def _list_of(count: int | tuple[int, ...], what: str) -> BeforeValidator:
@@ -196,14 +206,41 @@ Corner = Annotated[tuple[Length, ...], _list_of((2, 3), "coordinates X1, X2 and,
 Corners = Annotated[tuple[Corner, Corner, Corner, Corner], _list_of(4, "corners, one after the other")]
 
 
-DIMENSION_OF_FIELD = {"u": units.LENGTH, "w": units.NUMBER, "phi": units.INVERSE_LENGTH, "omega": units.ANGLE}
+def one_of(names: Collection[str]) -> BeforeValidator:
+    """A name of a registry, which may grow."""
+
+    def read(value: object) -> object:
+        if value not in names:
+            *others, last = (f"'{name}'" for name in names)
+            raise InputError(f"{units.quoted(value)} is not one of {', '.join(others)} or {last}")
+        return value
+
+    return BeforeValidator(read)
 
 
-def prescribed_value(value: object, field: str, one: bool) -> float | tuple[float, ...]:
+def _component(value: object, info: ValidationInfo) -> object:
+    if info.data.get("field") == "phi" and value is not None:
+        raise InputError("makes no sense with the field phi, which has only one; leave it out")
+    return value
+
+
+def _nodal_value(value: object, info: ValidationInfo) -> float | tuple[float, ...]:
     """Value of a nodal field, or of its three components: u in m, w a number, phi in 1/m, omega in rad."""
+    if "field" not in info.data:
+        return 0.0
+    dimension = DIMENSION_OF_FIELD[info.data["field"]]
     if not isinstance(value, list | tuple):
-        return _read(value, DIMENSION_OF_FIELD[field])
+        return _read(value, dimension)
+    one = info.data["field"] == "phi" or info.data.get("component") is not None
     if one or len(value) != 3:
         expected = "one value" if one else "one value, or three along X1, X2, X3"
         raise InputError(f"has {len(value)} entries; expected {expected}")
-    return tuple(_read(each, DIMENSION_OF_FIELD[field]) for each in value)
+    return tuple(_read(each, dimension) for each in value)
+
+
+Switch = StrictBool
+NodalField = Literal["u", "w", "phi", "omega"]
+Component = Annotated[Literal[1, 2, 3] | None, AfterValidator(_component)]
+NodalValue = Annotated[float | tuple[float, float, float], BeforeValidator(_nodal_value)]
+Element = Annotated[str, one_of(ELEMENTS)]
+Coupling = Annotated[str, one_of(COUPLINGS)]

@@ -7,12 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from magshell.model.loads.distribution import nodal_areas
-from magshell.problem import schema
+from magshell.model.loads.load import Size
 from magshell.problem.building import Problem
-from magshell.problem.wording import counted, quantity
-from magshell.shell.state import State
-from magshell.units import ACCELERATION, FORCE, MOMENT, STRESS, show
 
 
 @dataclass(frozen=True)
@@ -67,22 +63,17 @@ class Strength:
 
 def strength(problem: Problem, extent: float, youngs_modulus: float) -> Strength:
     """The loads of a problem, in numbers."""
-    sums = {"force": 0.0, "moment": 0.0, "traction": 0.0, "gravity": 0.0, "pressure": 0.0}
-    for number, table in enumerate(problem.file.loads):
-        peak = max(map(abs, table.history or (1.0,)))
-        match table:
-            case schema.PressureTable():
-                magnitude = abs(table.pressure)
-            case schema.ForceTable() | schema.MomentTable():
-                magnitude = float(np.linalg.norm(table.total))
-            case _:
-                magnitude = float(np.linalg.norm(_resultant(problem, number)))
-        sums[table.kind] += peak * magnitude
+    model = problem.model
+    peaks = [max(map(abs, load.history or (1.0,))) for load in model.loads]
+    sizes = [load.size(forces) for load, forces in zip(model.loads, model.forces_at_rest, strict=True)]
+    force, moment, weight, pressure = (
+        sum(peak * size[column] for peak, size in zip(peaks, sizes, strict=True)) for column in range(len(Size._fields))
+    )
     return Strength(
-        force=sums["force"] + sums["traction"],
-        moment=sums["moment"],
-        weight=sums["gravity"],
-        pressure=sums["pressure"],
+        force=force,
+        moment=moment,
+        weight=weight,
+        pressure=pressure,
         extent=extent,
         thickness=problem.model.shell.thickness,
         youngs_modulus=youngs_modulus,
@@ -91,50 +82,18 @@ def strength(problem: Problem, extent: float, youngs_modulus: float) -> Strength
 
 def lines(problem: Problem, strong: Strength) -> Iterator[tuple[str, str]]:
     """Label and text for each load, and for the dimensionless numbers."""
-    for number, table in enumerate(problem.file.loads):
-        text = _text(problem, number, table)
-        if table.history is not None:
-            text += f", times {', '.join(f'{each:g}' for each in table.history)} at the ends of the stages"
-        yield table.group or "whole shell", text
+    model = problem.model
+    for load, forces in zip(model.loads, model.forces_at_rest, strict=True):
+        text = load.words(model.shell, forces)
+        if load.history is not None:
+            text += f", times {', '.join(f'{each:g}' for each in load.history)} at the ends of the stages"
+        yield load.group or "whole shell", text
     if strong.force or strong.moment:
         yield "12 (F L + M) / (E h³)", f"{strong.bending:.4g}"
     if strong.weight:
         yield "12 W L / (E h³)", f"{strong.weight_bending:.4g} with the weight W"
     if strong.pressure:
         yield "p L / (E h)", f"{strong.stretching:.4g}"
-
-
-def _text(problem: Problem, number: int, table: schema.Load) -> str:
-    mesh = problem.model.shell.mesh
-    match table:
-        case schema.ForceTable() | schema.MomentTable():
-            dimension = FORCE if table.kind == "force" else MOMENT
-            turning = ", turns with the micro-rotation" if table.follower else ""
-            nodes = counted(len(mesh.nodes_of(table.group)), "node")
-            return f"{table.kind} {quantity(table.total, dimension)}, {nodes}{turning}"
-        case schema.TractionTable():
-            total = quantity(_resultant(problem, number), FORCE)
-            elements = counted(len(mesh.elements_of(table.group)), "element")
-            return f"traction {quantity(table.traction, STRESS)}, {elements}, in all {total}"
-        case schema.PressureTable():
-            members = mesh.elements_of(table.group)
-            force = table.pressure * float(nodal_areas(problem.model.shell, members).sum())
-            side = "along" if table.pressure > 0.0 else "against"
-            return (
-                f"pressure {show(table.pressure, STRESS)}, {side} the normal of {counted(len(members), 'element')}, "
-                f"at first {show(abs(force), FORCE)} on their area"
-            )
-        case schema.GravityTable():
-            weight = quantity(_resultant(problem, number), FORCE)
-            return f"gravity {quantity(table.acceleration, ACCELERATION)}, weight {weight}"
-
-
-def _resultant(problem: Problem, number: int) -> tuple[float, ...]:
-    """Sum of the forces of a dead load, N, without the round-off of components that are meant to be 0."""
-    shell = problem.model.shell
-    state = State.undeformed(len(shell.mesh.points), len(shell.mesh.elements), shell.element.vectors)
-    total = problem.model.applied[number].forces(state)[:, :3].sum(axis=0)
-    return tuple(np.where(np.abs(total) > 1e-9 * np.abs(total).max(), total, 0.0).tolist())
 
 
 def doubts(problem: Problem, strong: Strength) -> Iterator[str]:
@@ -152,6 +111,6 @@ def doubts(problem: Problem, strong: Strength) -> Iterator[str]:
         yield f"12 W L / (E h³) is {strong.weight_bending:.2g}: a weight {beyond}"
     if strong.stretching > 1e3:
         yield f"p L / (E h) is {strong.stretching:.2g}: a pressure {beyond}"
-    moved = any(table.kind == "prescribe" and np.any(table.value) for table in problem.file.supports)
+    moved = np.any(problem.model.constraints.values)
     if problem.file.loads and not any(problem.file.field.flux_density) and not moved and strong.overall < 1e-3:
         yield f"12 (F L + M + W L + p L³) / (E h³) is {strong.overall:.2g}: the shell will hardly move; check the units"

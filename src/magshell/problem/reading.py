@@ -84,10 +84,10 @@ def check(data: Mapping[str, Any], name: str) -> ProblemFile:
     """
     from pydantic import ValidationError
 
-    from magshell.problem.schema import ProblemFile
+    from magshell.problem.schema import problem_file
 
     try:
-        return ProblemFile.model_validate(data)
+        return problem_file().model_validate(data)
     except ValidationError as error:
         raise InputError("\n".join(_lines(error, name))) from None
 
@@ -191,18 +191,19 @@ def _located(details: Mapping[str, Any]) -> tuple[str, str]:
 
 def _kinds(table: str) -> list[str]:
     """What the key that chooses the kind of a table may say."""
+    from magshell.magnetics.remanence import REMANENCES
+    from magshell.materials import MATERIALS
+    from magshell.model.loads import LOADS
+    from magshell.model.supports import SUPPORTS
     from magshell.problem import schema
 
-    kinds = {
-        "mesh": schema.Mesh,
-        "material": schema.Material,
-        "remanence": schema.Remanence,
-        "supports": schema.Support,
-        "loads": schema.Load,
-    }
-    choice, _ = schema.ProblemFile.chosen_by[table]
-    fields = [kind.model_fields.get(choice) for kind in get_args(kinds[table])]
-    return [get_args(field.annotation)[0] for field in fields if field is not None]
+    if table == "mesh":
+        fields = [kind.model_fields.get("generator") for kind in get_args(schema.Mesh)]
+        return [get_args(field.annotation)[0] for field in fields if field is not None]
+    registries: dict[str, Mapping[str, Any]] = {
+        "material": MATERIALS, "remanence": REMANENCES, "supports": SUPPORTS, "loads": LOADS,
+    }  # fmt: skip
+    return list(registries[table])
 
 
 def _written(where: Sequence[str | int]) -> str:

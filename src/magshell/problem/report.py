@@ -9,18 +9,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
+from magshell.materials import own_keys
 from magshell.mesh import Mesh
 from magshell.mesh.files import FileMesh
 from magshell.mesh.geometry import centres, unit
 from magshell.mesh.quality import worst
 from magshell.model import symmetry
-from magshell.problem import load_report, remanence_report, schema, symmetry_report, triangle_report
+from magshell.model.supports import SymmetryPlane
+from magshell.problem import fields, load_report, remanence_report, schema, symmetry_report, triangle_report
 from magshell.problem.building import Problem
-from magshell.problem.fields import DIMENSION_OF_FIELD
+from magshell.problem.fields import dimension_of
 from magshell.problem.load_report import Strength
-from magshell.problem.wording import counted, quantity, vector
 from magshell.shell.unknowns import width
-from magshell.units import DENSITY, FLUX_DENSITY, LENGTH, STRESS, show
+from magshell.units import DENSITY, FLUX_DENSITY, LENGTH, NUMBER, STRESS, show
+from magshell.wording import counted, quantity
 
 VACUUM_PERMEABILITY = 4e-7 * math.pi
 
@@ -94,6 +96,13 @@ def describe(problem: Problem) -> Report:
         },
         warnings=list(_doubts(problem, figures, strong)),
     )
+
+
+def problem_html(problem: Problem) -> str:
+    """The model in a notebook, with the doubts about it."""
+    from magshell.output.notebook import model_html
+
+    return model_html(problem.model, problem.title, describe(problem).warnings)
 
 
 def _figures(problem: Problem) -> _Figures:
@@ -174,8 +183,9 @@ def _material(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
     yield "law", problem.file.material.law
     yield "shear modulus mu", show(material.shear_modulus, STRESS)
     yield "Lamé constant lambda", show(material.lame_lambda, STRESS)
-    if isinstance(problem.file.material, schema.MooneyRivlin):
-        yield "second invariant share", f"{problem.file.material.second_invariant_share:g}"
+    for key, described in own_keys(type(material)).items():
+        dimension, value = dimension_of(getattr(fields, described.kind)), getattr(material, key)
+        yield key.replace("_", " "), f"{value:g}" if dimension is NUMBER else show(value, dimension)
     yield "E, nu", f"{show(figures.youngs_modulus, STRESS)}, {figures.poissons_ratio:.4g}"
     ratio = material.coupling_modulus / material.shear_modulus
     yield "coupling modulus eta", f"{show(material.coupling_modulus, STRESS)} = {ratio:.4g} mu"
@@ -218,21 +228,11 @@ def _field(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
 
 def _supports(problem: Problem) -> Iterator[tuple[str, str]]:
     planes = iter(symmetry.planes(problem.model))
-    for table in problem.file.supports:
-        nodes = counted(len(problem.model.shell.mesh.nodes_of(table.group)), "node")
-        match table:
-            case schema.SymmetryTable():
-                yield (
-                    table.group,
-                    f"symmetry, normal {vector(table.normal)}, {nodes}"
-                    + symmetry_report.other_half(problem, next(planes)),
-                )
-            case schema.PrescribeTable():
-                what = table.field if table.component is None else f"{table.field}{table.component}"
-                value = quantity(table.value, DIMENSION_OF_FIELD[table.field])
-                yield table.group, f"prescribe {what} = {value}, {nodes}"
-            case _:
-                yield table.group, f"{table.kind}, {nodes}"
+    for support in problem.model.supports:
+        nodes = counted(len(problem.model.shell.mesh.nodes_of(support.group)), "node")
+        mirrored = isinstance(support, SymmetryPlane)
+        half = symmetry_report.other_half(problem, next(planes)) if mirrored else ""
+        yield support.group, f"{support.words}, {nodes}{half}"
 
 
 def _stages(problem: Problem) -> Iterator[tuple[str, str]]:

@@ -8,21 +8,16 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
+from magshell.magnetics.remanence import REMANENCES
 from magshell.mesh import Mesh
 from magshell.mesh.geometry import centres
 from magshell.model import symmetry
 from magshell.model.reflection import TYPED, polar
 from magshell.model.symmetry import MIRRORED, REVERSED, Plane
-from magshell.problem import schema
 from magshell.problem.building import Problem
-from magshell.problem.wording import quantity
 from magshell.units import FLUX_DENSITY
+from magshell.wording import quantity
 
-# Kinds whose formula, of an entry for the whole part, also holds beyond a mirror plane.
-IN_SPACE = (
-    schema.ConstantRemanence, schema.MeridionalRemanence, schema.CircumferentialRemanence, schema.RadialRemanence,
-    schema.TangentialRemanence, schema.ProfileRemanence, schema.RolledRemanence, schema.FoldedRemanence,
-)  # fmt: skip
 WORDS = {MIRRORED: "mirrored", REVERSED: "mirrored and reversed"}
 
 
@@ -39,7 +34,7 @@ def doubts(problem: Problem) -> Iterator[str]:
     """What breaks the mirror planes."""
     yield from symmetry.broken(problem.model)
     entries, model = problem.file.remanence, problem.model
-    if not model.field.magnitude or len(entries) != 1 or entries[0].group or not isinstance(entries[0], IN_SPACE):
+    if not model.field.magnitude or len(entries) != 1 or entries[0].group or not REMANENCES[entries[0].kind].in_space:
         return
     for plane in symmetry.planes(model):
         sign = symmetry.remanence_sign(model, plane)

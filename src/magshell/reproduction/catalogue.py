@@ -14,7 +14,8 @@ from magshell.output.bodies import Body, Copy, mirrored, shifted, step_at, turne
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh
-    from magshell.solver.path import Path, Step
+    from magshell.solver.path import Path
+    from magshell.solver.step import Step
 
 MM = 1e-3
 BETWEEN_STRIPS = 10.0 * MM

@@ -20,7 +20,8 @@ from magshell.output.bodies import faces
 from magshell.output.tessellation import Tessellation
 
 if TYPE_CHECKING:
-    from magshell.solver.path import Path, Step
+    from magshell.solver.path import Path
+    from magshell.solver.step import Step
 
 PIECES = 8
 OUTER, MIDDLE, INNER = 0.5, 0.0, -0.5

@@ -24,7 +24,8 @@ from magshell.reproduction.table import Row
 from magshell.reproduction.variants import LARGER, LOCKING, OTHER_ELEMENT, STRETCHES, Stretch, stretched
 
 if TYPE_CHECKING:
-    from magshell.solver.path import Path, Step
+    from magshell.solver.path import Path
+    from magshell.solver.step import Step
 
 Paths = Mapping[str, "Path"]
 WITHOUT = {"none": "no thickness stretch", "plane-stress": "plane stress instead of the thickness stretch"}

@@ -13,7 +13,7 @@ from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, ProcessP
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from magshell.equations.discretisation import Discretisation
-from magshell.errors import InputError, SolveError
+from magshell.errors import InputError
 from magshell.kernel_cache import log
 from magshell.linalg import nested_dissection
 from magshell.problem.building import build
@@ -21,7 +21,8 @@ from magshell.processes import cores, interrupts_wait
 from magshell.shell.loops import are_compiled
 from magshell.solver.critical import CriticalPoint
 from magshell.solver.events import Iteration, Observer
-from magshell.solver.path import Path, Step
+from magshell.solver.path import Path, SolveError
+from magshell.solver.step import Step
 from magshell.solver.stepping import solve
 
 if TYPE_CHECKING:

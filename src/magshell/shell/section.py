@@ -311,7 +311,7 @@ def predicted_stress(
     S_mixed: FloatArray,
     kappa_mixed: FloatArray,
 ) -> None:
-    """Fill S' = U⁻¹ (P + C : ΔU - ΔU S) (levels, 3, 3), κ' = κ + Δκ (2, 3), linear in the increment dx (31,) from w.x."""
+    """Fill S' = U⁻¹ (P + C : ΔU - ΔU S) (levels, 3, 3), κ' = κ + Δκ (2, 3), linear in the increment dx (31,)."""
     x, g, t, S, C, P = w.x, w.base, w.t, w.S, w.C, w.P
     q, dq, ω, dU, dP = x[Q : Q + 4], dx[Q : Q + 4], w.n, w.dU, w.dP
     n2 = rotation_matrix(q, w.R)

@@ -21,8 +21,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from magshell.arrays import FloatArray
+from magshell.drawing import drawing
 from magshell.equations.discretisation import Discretisation
-from magshell.errors import InputError, SolveError
+from magshell.errors import InputError
 from magshell.linalg import SingularMatrix, make_solver, nested_dissection
 from magshell.model.model import Model
 from magshell.shell.state import State
@@ -32,7 +33,7 @@ from magshell.solver.events import Observer
 from magshell.solver.follower import Follower
 from magshell.solver.linear_path import REACH, LinearPath
 from magshell.solver.newton import StepFailure, System
-from magshell.solver.path import Path
+from magshell.solver.path import Path, SolveError
 from magshell.solver.settings import Settings
 from magshell.units import ANGLE, show
 
@@ -130,9 +131,7 @@ class Buckling(NamedTuple):
         return found
 
     def _repr_html_(self) -> str:
-        from magshell.output.notebook import buckling_html
-
-        return buckling_html(self)
+        return str(drawing("buckling_html")(self))
 
 
 def buckling(

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from magshell.equations.discretisation import Discretisation
     from magshell.solver.critical import CriticalPoint
-    from magshell.solver.path import Path, Step
+    from magshell.solver.path import Path
     from magshell.solver.settings import Settings
+    from magshell.solver.step import Step
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,9 @@ from magshell.solver.diagnosis import diagnosis
 from magshell.solver.events import Iteration, Observer
 from magshell.solver.goals import Goal, LoadGoal, ProbeGoal, goals_of
 from magshell.solver.newton import Solution, StepFailure, System, Trial, newton
-from magshell.solver.path import Path, Step
+from magshell.solver.path import Path
 from magshell.solver.starts import Start, start_of
+from magshell.solver.step import Step
 from magshell.solver.track import Direction, Point, Slope, arc, close_factors, crossing, known, point_at, trial_at
 from magshell.solver.waypoint import Waypoint
 

@@ -9,7 +9,7 @@ from magshell.model.course import Course
 from magshell.model.model import Model
 from magshell.solver.constraints import Constraint, ProbeValue
 from magshell.solver.newton import Trial
-from magshell.solver.path import Step
+from magshell.solver.step import Step
 from magshell.solver.track import Point, Slope
 
 

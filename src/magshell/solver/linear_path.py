@@ -136,7 +136,7 @@ class LinearPath:
         fields = evaluate(reference, state, plane_stress_stretch(reference, state, materials))
         U = micropolar_stretch(fields)
         _, P, _ = of_materials(reference, materials, U)
-        return Stresses(np.linalg.solve(U, P), np.ascontiguousarray(fields.kappa))
+        return Stresses(np.asarray(np.linalg.solve(U, P)), np.ascontiguousarray(fields.kappa))
 
     def _fit(self) -> None:
         """Make the unit one over which the loads change the tangent little, but not only by round-off."""

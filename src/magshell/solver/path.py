@@ -4,66 +4,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from os import PathLike
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from magshell.arrays import FloatArray
+from magshell.drawing import drawing
 from magshell.equations.discretisation import Discretisation
 from magshell.errors import InputError, suggest
-from magshell.evaluation.balance import Balance, largest_imbalances
+from magshell.evaluation.balance import largest_imbalances
 from magshell.model.course import Course, Loading
 from magshell.model.model import Model
-from magshell.shell.state import State
 from magshell.solver.critical import CriticalPoint
 from magshell.solver.settings import Settings
-
-if TYPE_CHECKING:
-    from magshell.solver.waypoint import Waypoint
-
-
-class Step(NamedTuple):
-    """A converged step.
-
-    Attributes
-    ----------
-    number : int
-        0 is the undeformed state.
-    load_factor : float
-    state : State
-    iterations : int
-        Newton iterations, each one factorisation and solve.
-    residual : float
-        Relative, of the worst kind of unknown.
-    balance : Balance or None
-        Global equilibrium; None for the undeformed state.
-    arc_length : float
-        Length of the path up to here (`magshell.solver.constraints`).
-    stage : int
-        From 0.
-    flux_density : ndarray, shape (3,)
-        T.
-    loads : ndarray, shape (loads,)
-        Multipliers of the model's loads.
-    negative_pivots : int or None
-        Of the tangent: 0 for a stable state (`magshell.solver.critical` says of which shells); None where the linear
-        solver cannot tell.
-    """
-
-    number: int
-    load_factor: float
-    state: State
-    iterations: int
-    residual: float
-    balance: Balance | None
-    arc_length: float
-    stage: int
-    flux_density: FloatArray
-    loads: FloatArray
-    negative_pivots: int | None
-
-    def __repr__(self) -> str:
-        return f"Step({self.number}: load factor {self.load_factor:.6g} of stage {self.stage + 1})"
+from magshell.solver.step import Step
+from magshell.solver.waypoint import Waypoint
 
 
 class Probe(NamedTuple):
@@ -135,9 +90,7 @@ class Path:
         return f"Path({max(len(self.steps) - 1, 0)} steps, {self.discretisation.dofs} unknowns: {self.reason})"
 
     def _repr_html_(self) -> str:
-        from magshell.output.notebook import path_html
-
-        return path_html(self)
+        return str(drawing("path_html")(self))
 
     def add(self, waypoint: Waypoint) -> None:
         """Lengthen the path by a converged step."""
@@ -209,9 +162,7 @@ class Path:
 
     def save(self, file: str | PathLike[str]) -> None:
         """Write every step as VTU beside a PVD file that ParaView opens."""
-        from magshell.output.vtu import save_path
-
-        save_path(self, file)
+        drawing("save_path")(self, file)
 
     def view(self, file: str | PathLike[str] = "view.html", color: str = "u3") -> None:
         """Write one self-contained page for a browser: shape, steps, colours, curves.
@@ -222,9 +173,7 @@ class Path:
         color : str
             Output that colours the shape at first.
         """
-        from magshell.output.page import write_page
-
-        write_page(self, file, color=color)
+        drawing("write_page")(self, file, color=color)
 
     def animate(self, file: str | PathLike[str], color: str = "u3") -> None:
         """Write the path as an animation, a converged step for each frame.
@@ -236,12 +185,25 @@ class Path:
         color : str
             Output that colours the shape.
         """
-        from magshell.output.animation import animate
-
-        animate(self, file, color)
+        drawing("animate")(self, file, color)
 
     def plot(self, color: str = "u3") -> Any:
         """Picture of the last deformed shape, coloured by a registered output."""
-        from magshell.output.pictures import draw_shape
+        return drawing("draw_shape")(self, file=None, color=color)
 
-        return draw_shape(self, file=None, color=color)
+
+class SolveError(RuntimeError):
+    """The load path could not be followed to its end.
+
+    Attributes
+    ----------
+    reason : str
+        Why, and what to try.
+    path : Path
+        Every converged step up to the failure.
+    """
+
+    def __init__(self, reason: str, path: Path) -> None:
+        super().__init__(reason)
+        self.reason = reason
+        self.path = path

@@ -7,13 +7,12 @@ import time
 from collections.abc import Sequence
 
 from magshell.equations.discretisation import Discretisation
-from magshell.errors import SolveError
 from magshell.linalg import make_solver, nested_dissection
 from magshell.model.model import Model
 from magshell.solver.events import Observer
 from magshell.solver.follower import Follower
 from magshell.solver.newton import StepFailure, System
-from magshell.solver.path import Path
+from magshell.solver.path import Path, SolveError
 from magshell.solver.settings import Settings
 
 logger = logging.getLogger(__name__)

@@ -5,9 +5,10 @@ from __future__ import annotations
 import logging
 import pathlib
 
-from magshell.errors import InputError, SolveError
+from magshell.errors import InputError
 from magshell.problem.reading import Source
 from magshell.solver.events import Iteration, Observer
+from magshell.solver.path import SolveError
 from magshell.sweep.outcomes import WAITING, Outcome, outcome_in
 
 

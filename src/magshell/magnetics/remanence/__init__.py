@@ -12,23 +12,48 @@ gives the remanence there, same shape. A point that nobody asks for is NaN, and 
 
 from __future__ import annotations
 
-from magshell.magnetics.remanence.about_axis import circumferential, meridional, radial
-from magshell.magnetics.remanence.constant import constant
-from magshell.magnetics.remanence.curve import along_curve
+from magshell.magnetics.remanence.about_axis import (
+    CIRCUMFERENTIAL,
+    MERIDIONAL,
+    RADIAL,
+    circumferential,
+    meridional,
+    radial,
+)
+from magshell.magnetics.remanence.constant import CONSTANT, constant
+from magshell.magnetics.remanence.curve import ALONG_CURVE, along_curve
 from magshell.magnetics.remanence.deformed import deformed
-from magshell.magnetics.remanence.files import displaced_from_file, from_file
-from magshell.magnetics.remanence.folds import Fold, folded, rolled
+from magshell.magnetics.remanence.files import DEFORMED, FROM_FILE, displaced_from_file, from_file
+from magshell.magnetics.remanence.folds import FOLDED, ROLLED, Fold, folded, rolled
 from magshell.magnetics.remanence.groups import by_group
-from magshell.magnetics.remanence.profile import profile
+from magshell.magnetics.remanence.profile import PROFILE, profile
 from magshell.magnetics.remanence.sampled import at_places, function, per_element
-from magshell.magnetics.remanence.surface import tangential
+from magshell.magnetics.remanence.surface import TANGENTIAL, tangential
 from magshell.magnetics.remanence.template import Shape, placed, template
 from magshell.magnetics.remanence.vectors import Remanence
+from magshell.magnetics.remanence.way import Way
+
+REMANENCES: dict[str, Way] = {
+    "constant": CONSTANT,
+    "meridional": MERIDIONAL,
+    "circumferential": CIRCUMFERENTIAL,
+    "radial": RADIAL,
+    "tangential": TANGENTIAL,
+    "along-curve": ALONG_CURVE,
+    "profile": PROFILE,
+    "file": FROM_FILE,
+    "rolled": ROLLED,
+    "folded": FOLDED,
+    "deformed": DEFORMED,
+}
+"""The ways to magnetise that problem files know, by their kind."""
 
 __all__ = [
+    "REMANENCES",
     "Fold",
     "Remanence",
     "Shape",
+    "Way",
     "along_curve",
     "at_places",
     "by_group",

@@ -7,8 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from magshell import wording
 from magshell.arrays import FloatArray
+from magshell.keys import Key
 from magshell.magnetics.remanence.vectors import Remanence, direction, flipped_towards, scaled, vector
+from magshell.magnetics.remanence.way import MAGNITUDE, TOWARDS, Way
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh
@@ -87,3 +90,42 @@ def radial(
         return scaled(arm, -magnitude if inward else magnitude, "radial")
 
     return sample
+
+
+MERIDIONAL = Way(
+    meridional,
+    {
+        "magnitude": MAGNITUDE,
+        "axis": Key("Direction", "From the centre (the origin) to the pole that it points away from."),
+        "mirrored": Key("Switch", "Whether it is reversed below the equator."),
+    },
+    lambda magnitude, axis, mirrored: (
+        f"meridional, away from the pole {wording.vector(axis)}" + ", mirrored at the equator" * mirrored
+    ),
+    in_space=True,
+)
+CIRCUMFERENTIAL = Way(
+    circumferential,
+    {
+        "magnitude": MAGNITUDE,
+        "axis": Key("Direction", "Of the circles, through the origin; the sense is axis × radius."),
+        "towards": TOWARDS,
+    },
+    lambda magnitude, axis, towards: (
+        f"circumferential, about the axis {wording.vector(axis)}" + wording.towards(towards)
+    ),
+    in_space=True,
+)
+RADIAL = Way(
+    radial,
+    {
+        "magnitude": MAGNITUDE,
+        "axis": Key("Direction", "Direction of the axis."),
+        "through": Key("Position", "A point of the axis."),
+        "inward": Key("Switch", "Towards the axis instead of away from it."),
+    },
+    lambda magnitude, axis, through, inward: (
+        f"radial, {'towards' if inward else 'away from'} the axis {wording.vector(axis)}"
+    ),
+    in_space=True,
+)

@@ -2,14 +2,61 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import ArrayLike
 
+from magshell import wording
+from magshell.keys import Key
 from magshell.magnetics.remanence.vectors import Remanence
 from magshell.magnetics.remanence.vectors import vector as checked
+from magshell.magnetics.remanence.way import Way
 
 
 def constant(vector: ArrayLike) -> Remanence:
     """The same vector (3,), T, everywhere."""
     value = checked("vector", vector)
     return lambda mesh, points: np.broadcast_to(value, points.shape).copy()
+
+
+def _from_keys(
+    vector: ArrayLike | None = None, magnitude: float | None = None, direction: ArrayLike | None = None
+) -> Remanence:
+    if vector is not None:
+        return constant(vector)
+    return constant((magnitude or 0.0) * np.asarray(direction) / np.linalg.norm(np.asarray(direction)))
+
+
+def _words(vector: Sequence[float] | None, magnitude: float | None, direction: Sequence[float] | None) -> str:
+    along = np.array(direction if vector is None else vector)
+    length = np.linalg.norm(along)
+    return f"constant, along {wording.vector(along / length)}" if length else "constant"
+
+
+def _fault(
+    vector: Sequence[float] | None, magnitude: float | None, direction: Sequence[float] | None
+) -> tuple[str, str] | None:
+    """It is given once."""
+    polar = (magnitude is not None, direction is not None)
+    if vector is None and polar == (False, False):
+        return "vector", "is missing; give it, or magnitude and direction"
+    if vector is not None and any(polar):
+        return "vector", "is given beside magnitude or direction; give one or the other"
+    if vector is None and not all(polar):
+        present, missing = ("magnitude", "direction") if polar[0] else ("direction", "magnitude")
+        return missing, f"is missing beside {present}"
+    return None
+
+
+CONSTANT = Way(
+    _from_keys,
+    {
+        "vector": Key("FluxVector", "The remanent flux density; or instead", "magnitude and direction"),
+        "magnitude": Key("PositiveFluxDensity", "its magnitude, and"),
+        "direction": Key("Direction", "its direction."),
+    },
+    _words,
+    in_space=True,
+    fault=_fault,
+)

@@ -7,9 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from magshell import wording
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError, suggest
+from magshell.keys import Key
 from magshell.magnetics.remanence.vectors import Remanence, direction, flipped_towards
+from magshell.magnetics.remanence.way import MAGNITUDE, TOWARDS, Way
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh
@@ -111,3 +114,16 @@ def _line(t: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Quadratic functions of end, end, middle and their derivatives at t (m,): (m, 3) each."""
     N = np.stack([t * (t - 1.0) / 2.0, t * (t + 1.0) / 2.0, 1.0 - t**2], axis=1)
     return N, np.stack([t - 0.5, t + 0.5, -2.0 * t], axis=1)
+
+
+ALONG_CURVE = Way(
+    lambda curve, magnitude, towards=None: along_curve(curve, magnitude, towards),
+    {
+        "curve": Key(
+            "Name", "Group of edges: the tangent at its nearest point is the direction. It runs as its first edge."
+        ),
+        "magnitude": MAGNITUDE,
+        "towards": TOWARDS,
+    },
+    lambda curve, magnitude, towards: f"along the curve {curve}" + wording.towards(towards),
+)

@@ -13,11 +13,13 @@ import numpy as np
 from magshell import units
 from magshell.arrays import FloatArray
 from magshell.errors import InputError, suggest
+from magshell.keys import Key
 from magshell.magnetics.remanence.deformed import Deformed
 from magshell.magnetics.remanence.sampled import at_places, per_element
 from magshell.magnetics.remanence.tables import LARGEST, Columns, Table, duplicate, read_table, unreadable
-from magshell.magnetics.remanence.template import Placed
+from magshell.magnetics.remanence.template import Placed, in_template
 from magshell.magnetics.remanence.vectors import Remanence
+from magshell.magnetics.remanence.way import Way
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh
@@ -167,3 +169,33 @@ def read_array(file: pathlib.Path) -> FloatArray:
         if not allowed.all():
             raise InputError(f"{file.name}: row {np.flatnonzero(~allowed.all(axis=1))[0]} {fault}")
     return numbers
+
+
+FROM_FILE = Way(
+    lambda file, flux_density_unit, length_unit=None, tolerance=None: from_file(
+        file, flux_density_unit, length_unit, tolerance
+    ),
+    {
+        "file": Key(
+            "FileName",
+            "CSV with the columns `b1,b2,b3` and, if its rows are places, `x1,x2,x3`; without them one row per "
+            "element. Or a `.npy` array (elements, 3).",
+        ),
+        "flux_density_unit": Key("FluxDensityUnit", 'Unit of the vectors, such as `"mT"`.'),
+        "length_unit": Key("LengthUnit", "Unit of the places."),
+        "tolerance": Key("PositiveLength", "Largest distance from the centre of an element to its place."),
+    },
+    lambda file, **others: f"from {file}",
+)
+DEFORMED = in_template(
+    displaced_from_file,
+    {
+        "displacements": Key(
+            "FileName",
+            "CSV with the columns `u1,u2,u3` and, for the undeformed places of the nodes, `x1,x2,x3`; without them one "
+            "row per node. Or a `.npy` array (nodes, 3).",
+        ),
+        "length_unit": Key("LengthUnit", "Unit of its numbers."),
+    },
+    lambda displacements, length_unit: f"deformed as {displacements} says",
+)

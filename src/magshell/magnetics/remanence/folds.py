@@ -20,10 +20,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from magshell import wording
 from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError
-from magshell.magnetics.remanence.template import Placed
+from magshell.keys import Key
+from magshell.magnetics.remanence.template import Placed, in_template
 from magshell.magnetics.remanence.vectors import direction, first_element, vector
+from magshell.units import ANGLE, LENGTH, show
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh
@@ -196,3 +199,37 @@ def rolled(radius: float, through: ArrayLike, along: ArrayLike, towards: ArrayLi
     A part longer than 2π radius passes through itself: the layers of a roll are taken to have one radius.
     """
     return Folded((Fold(through, along, towards, radius=radius),))
+
+
+def _folds(folds: Sequence[Fold]) -> Folded:
+    """Of entries that have the parameters of a fold."""
+    made = []
+    for number, one in enumerate(folds):
+        try:
+            made.append(Fold(one.through, one.along, one.towards, one.angle, one.radius))
+        except InputError as error:
+            raise InputError(f".folds[{number}]: {str(error).removeprefix('remanence: ')}") from None
+    return folded(*made)
+
+
+FOLDED = in_template(
+    _folds,
+    {"folds": Key("Folds", "From the piece that stays outwards, each as on the flat part.")},
+    lambda folds: (
+        f"folded along {wording.counted(len(folds), 'line')} by {', '.join(show(one.angle, ANGLE) for one in folds)}"
+    ),
+    in_space=True,
+)
+ROLLED = in_template(
+    rolled,
+    {
+        "radius": Key("PositiveLength", "Of the rolled mid-surface."),
+        "through": Key("Position", "A point of the line at which rolling begins; what lies before stays flat."),
+        "along": Key("Direction", "In the flat part, normal to that line: the direction of rolling."),
+        "towards": Key("Direction", "Normal of the flat part, to the side of the cylinder."),
+    },
+    lambda radius, through, along, towards: (
+        f"rolled to the radius {show(radius, LENGTH)} towards {wording.vector(towards)}"
+    ),
+    in_space=True,
+)

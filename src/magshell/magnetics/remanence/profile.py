@@ -12,14 +12,20 @@ sign. Neither needs a name of its own.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from magshell import wording
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
+from magshell.keys import Key
 from magshell.magnetics.remanence.vectors import Remanence, direction, vector
+from magshell.magnetics.remanence.way import Way
+from magshell.units import ANGLE, LENGTH, show
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh
@@ -90,3 +96,45 @@ def _normal_to(e: FloatArray, towards: ArrayLike) -> FloatArray:
     if length < PARALLEL:
         raise InputError("remanence: towards is parallel to start; it says into which direction the remanence turns")
     return np.asarray(n / length)
+
+
+def _from_keys(
+    along: ArrayLike,
+    positions: ArrayLike,
+    magnitude: ArrayLike,
+    direction: ArrayLike,
+    angle: ArrayLike = (0.0,),
+    towards: ArrayLike | None = None,
+    origin: ArrayLike = (0.0, 0.0, 0.0),
+) -> Remanence:
+    return profile(magnitude, positions, along, direction, angle, towards, origin)
+
+
+def _words(along: Sequence[float], positions: Sequence[float], angle: Sequence[float], **others: Any) -> str:
+    words = f"over {show(positions[0], LENGTH)} to {show(positions[-1], LENGTH)} along {wording.vector(along)}"
+    turned = max(angle) - min(angle)
+    if turned:
+        words += f", turning by {show(turned, ANGLE)}"
+        if turned > 2.0 * math.pi:
+            words += f" ({turned / (2.0 * math.pi):.4g} turns)"
+    return words
+
+
+PROFILE = Way(
+    _from_keys,
+    {
+        "along": Key("Direction", "Direction of the coordinate $s$."),
+        "positions": Key("Positions", "Values of $s$, rising."),
+        "magnitude": Key(
+            "FluxDensities", "At the positions, or one for all; linear between, constant beyond. May change sign."
+        ),
+        "direction": Key("Direction", "Of the remanence at angle 0."),
+        "angle": Key(
+            "Angles", "At the positions, or one for all; linear between, constant beyond. May pass 360°.", "0"
+        ),
+        "towards": Key("Direction", "Direction into which a positive angle turns; needed with an angle."),
+        "origin": Key("Position", "Where $s = 0$."),
+    },
+    _words,
+    in_space=True,
+)

@@ -7,10 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from magshell import wording
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
+from magshell.keys import Key
 from magshell.magnetics.remanence.inside import find
 from magshell.magnetics.remanence.vectors import Remanence, direction, first_element
+from magshell.magnetics.remanence.way import MAGNITUDE, Way
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh
@@ -50,3 +53,14 @@ def tangential(magnitude: float, along: ArrayLike) -> Remanence:
         return np.asarray(magnitude * inside / length)
 
     return sample
+
+
+TANGENTIAL = Way(
+    lambda magnitude, direction: tangential(magnitude, direction),
+    {
+        "magnitude": MAGNITUDE,
+        "direction": Key("Direction", "Laid into the tangent plane of the surface at every point."),
+    },
+    lambda magnitude, direction: f"in the surface, along {wording.vector(direction)}",
+    in_space=True,
+)

@@ -19,14 +19,18 @@ the thickness they cancel to the first order.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from magshell import wording
 from magshell.arrays import FloatArray
+from magshell.keys import Key
 from magshell.magnetics.remanence.vectors import Remanence
 from magshell.magnetics.remanence.vectors import direction as unit
+from magshell.magnetics.remanence.way import Way
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh
@@ -99,3 +103,22 @@ def carried(remanence: Remanence, mesh: Mesh, points: FloatArray) -> FloatArray:
     """What the part carries in its template at points (elements, points, 3), T; the remanence itself without."""
     there = getattr(remanence, "carried_at", None)
     return remanence(mesh, points) if there is None else there(mesh, points)
+
+
+def in_template(
+    shape: Callable[..., Shape], keys: Mapping[str, Key], words: Callable[..., str], in_space: bool = False
+) -> Way:
+    """The way to magnetise in a shape, which is made of the values of its own keys in their order."""
+
+    def make(magnitude: float, direction: ArrayLike, **own: Any) -> Remanence:
+        return template(shape(*(own[key] for key in keys)), magnitude, direction)
+
+    about = {
+        "magnitude": Key("PositiveFluxDensity", "Magnitude that the part keeps."),
+        "direction": Key("Direction", "Of the uniform magnetising field, with the part in the shape below."),
+    }
+
+    def said(magnitude: float, direction: Sequence[float], **own: Any) -> str:
+        return f"magnetised along {wording.vector(direction)} while {words(**own)}"
+
+    return Way(make, {**about, **keys}, said, in_space)

@@ -9,4 +9,7 @@ from magshell.model.loads.moment import Moment
 from magshell.model.loads.pressure import Pressure
 from magshell.model.loads.traction import Traction
 
-__all__ = ["Applied", "Force", "Gravity", "Load", "Moment", "Pairs", "Pressure", "Traction"]
+LOADS: dict[str, type[Load]] = {load.kind: load for load in (Force, Moment, Traction, Pressure, Gravity)}
+"""The loads that problem files know, by their kind."""
+
+__all__ = ["LOADS", "Applied", "Force", "Gravity", "Load", "Moment", "Pairs", "Pressure", "Traction"]

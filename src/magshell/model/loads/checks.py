@@ -1,43 +1,13 @@
-"""Input of loads: numbers, vectors and histories, refused with the load that they belong to."""
+"""Input of loads: numbers and vectors."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
-from magshell.model.history import numbers
-from magshell.model.loads.load import Load
-
-
-def label(load: Load) -> str:
-    """The load's name in messages."""
-    return f"loads: {load.kind}" + ("" if load.group is None else f" on '{load.group}'")
-
-
-@contextmanager
-def located(load: Load) -> Iterator[None]:
-    """Prefix every input error of the block with the load."""
-    try:
-        yield
-    except InputError as error:
-        raise InputError(f"{label(load)}: {error}") from None
-
-
-def keep_history(load: Load) -> None:
-    """Replace a load's history by a tuple of floats.
-
-    Raises
-    ------
-    InputError
-        It is something else than finite numbers.
-    """
-    if load.history is not None:
-        object.__setattr__(load, "history", tuple(numbers(load.history, label(load)).tolist()))
 
 
 def vector(name: str, value: Any) -> FloatArray:

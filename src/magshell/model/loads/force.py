@@ -6,7 +6,7 @@ that the tangent gets [R̃_I F_I]× at (u, ω). No potential has that: nothing o
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -15,18 +15,20 @@ from numpy.typing import ArrayLike
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
-from magshell.model.loads.checks import keep_history, located, vector
+from magshell.keys import HISTORY, Key
+from magshell.model.loads.checks import vector
 from magshell.model.loads.cross import cross_matrix
 from magshell.model.loads.dead import DeadForces, nodal
 from magshell.model.loads.distribution import shares
-from magshell.model.loads.load import Applied, Pairs
+from magshell.model.loads.load import Applied, Load, Pairs, Size
 from magshell.model.shell import Shell
 from magshell.shell import rotation
 from magshell.shell.state import State
+from magshell.units import FORCE, Dimension
 
 
 @dataclass(frozen=True, eq=False)
-class Force:
+class Force(Load):
     """A force on the displacements of a group.
 
     Parameters
@@ -44,18 +46,23 @@ class Force:
     """
 
     kind: ClassVar[str] = "force"
+    keys: ClassVar[Mapping[str, Key]] = {
+        "group": Key("Name", "Group of edges, nodes or elements that it acts on."),
+        "total": Key("ForceVector", "Its sum over the group."),
+        "follower": Key("Switch", "Whether it turns with the micro-rotations of its nodes."),
+        "history": HISTORY,
+    }
+    amount: ClassVar[tuple[str, Dimension]] = ("total", FORCE)
+    letter: ClassVar[str] = "$F$"
 
     group: str
     total: ArrayLike
     follower: bool = False
     history: Sequence[float] | None = None
 
-    def __post_init__(self) -> None:
-        keep_history(self)
-
     def applied(self, shell: Shell, normals: FloatArray) -> Applied:
         """The load on a mesh."""
-        with located(self):
+        with self.located():
             if self.follower and not shell.micro_rotation:
                 raise InputError(
                     "a follower turns with the micro-rotation, which this shell does not have; leave follower out"
@@ -63,6 +70,14 @@ class Force:
             parts = shares(shell, self.group, "omega" if self.follower else "u")
             on_u = parts[:, None] * vector("total", self.total)
         return _TurningForces(on_u) if self.follower else DeadForces(on_u)
+
+    def words(self, shell: Shell, forces: FloatArray) -> str:
+        """Total and number of nodes."""
+        return f"{self.given}, {self.extent(shell)}" + ", turns with the micro-rotation" * self.follower
+
+    def size(self, forces: FloatArray) -> Size:
+        """Its total."""
+        return Size(force=float(np.linalg.norm(self.value)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,24 +7,28 @@ that, which puts the centre of mass off it by h²/12 times the sum of the two cu
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
-from magshell.model.loads.checks import keep_history, located, vector
+from magshell.keys import HISTORY, Key
+from magshell.mesh.geometry import centres
+from magshell.model.loads.checks import vector
 from magshell.model.loads.dead import DeadForces
 from magshell.model.loads.distribution import nodal_volumes
-from magshell.model.loads.load import Applied
+from magshell.model.loads.load import Applied, Arrows, Load, Size, amid, resultant
 from magshell.model.shell import Shell
+from magshell.units import ACCELERATION, FORCE, Dimension
+from magshell.wording import quantity
 
 
 @dataclass(frozen=True, eq=False)
-class Gravity:
+class Gravity(Load):
     """The weight of the shell, whose `density` it needs.
 
     Parameters
@@ -38,22 +42,42 @@ class Gravity:
     """
 
     kind: ClassVar[str] = "gravity"
+    keys: ClassVar[Mapping[str, Key]] = {
+        "acceleration": Key("AccelerationVector", "Of free fall."),
+        "group": Key("Name", "Group of elements that has weight.", "the whole shell"),
+        "history": HISTORY,
+    }
+    amount: ClassVar[tuple[str, Dimension]] = ("acceleration", ACCELERATION)
+    letter: ClassVar[str] = "$g$"
+    on: ClassVar[Literal["nodes", "elements"]] = "elements"
 
     acceleration: ArrayLike
     group: str | None = None
     history: Sequence[float] | None = None
 
-    def __post_init__(self) -> None:
-        keep_history(self)
-
     def applied(self, shell: Shell, normals: FloatArray) -> Applied:
         """The load on a mesh."""
         if shell.density is None:
             raise InputError("shell: density is missing; gravity needs it")
-        with located(self):
+        with self.located():
             acceleration = vector("acceleration", self.acceleration)
-            members = np.arange(len(shell.mesh.elements))
-            if self.group is not None:
-                members = shell.mesh.elements_of(self.group)
+            members = self.members(shell)
         masses = shell.density * nodal_volumes(shell, normals, members)
         return DeadForces(masses[:, None] * acceleration)
+
+    def words(self, shell: Shell, forces: FloatArray) -> str:
+        """Acceleration and weight."""
+        return f"{self.given}, weight {quantity(resultant(forces), FORCE)}"
+
+    def size(self, forces: FloatArray) -> Size:
+        """The weight."""
+        return Size(weight=float(np.linalg.norm(resultant(forces))))
+
+    def arrows(self, shell: Shell, forces: FloatArray) -> Arrows:
+        """One, amid the elements."""
+        middles = centres(shell.mesh.points, shell.mesh.elements[self.members(shell)])
+        return Arrows(amid(middles), np.array([self.value]), f"{self.kind}, {self.magnitude}")
+
+    def beyond(self, at_nodes: bool, at_elements: bool) -> str:
+        """Weight acts on both halves wherever the plane is."""
+        return "the other half would weigh another way"

@@ -16,7 +16,7 @@ regard to that.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -25,18 +25,20 @@ from numpy.typing import ArrayLike
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
-from magshell.model.loads.checks import keep_history, located, vector
+from magshell.keys import HISTORY, Key
+from magshell.model.loads.checks import vector
 from magshell.model.loads.cross import cross_matrix
 from magshell.model.loads.dead import nodal
 from magshell.model.loads.distribution import shares
-from magshell.model.loads.load import Applied, Pairs
+from magshell.model.loads.load import Applied, Load, Pairs, Size
 from magshell.model.shell import Shell
 from magshell.shell import rotation
 from magshell.shell.state import State
+from magshell.units import MOMENT, Dimension
 
 
 @dataclass(frozen=True, eq=False)
-class Moment:
+class Moment(Load):
     """A moment on the micro-rotations of a group; on the directors where the shell has no micro-rotation.
 
     Parameters
@@ -52,18 +54,24 @@ class Moment:
     """
 
     kind: ClassVar[str] = "moment"
+    keys: ClassVar[Mapping[str, Key]] = {
+        "group": Key("Name", "Group of edges, nodes or elements that it acts on."),
+        "total": Key("MomentVector", "Its sum over the group."),
+        "follower": Key("Switch", "Whether it turns with the micro-rotations of its nodes."),
+        "history": HISTORY,
+    }
+    amount: ClassVar[tuple[str, Dimension]] = ("total", MOMENT)
+    letter: ClassVar[str] = "$M$"
+    axial: ClassVar[bool] = True
 
     group: str
     total: ArrayLike
     follower: bool = False
     history: Sequence[float] | None = None
 
-    def __post_init__(self) -> None:
-        keep_history(self)
-
     def applied(self, shell: Shell, normals: FloatArray) -> Applied:
         """The load on a mesh."""
-        with located(self):
+        with self.located():
             if self.follower and not shell.micro_rotation:
                 raise InputError(
                     "a follower turns with the micro-rotation, which this shell does not have; leave follower out: "
@@ -74,6 +82,14 @@ class Moment:
         if not shell.micro_rotation:
             return _DirectorMoments(moments, normals)
         return _TurningCouples(moments) if self.follower else _DeadCouples(moments)
+
+    def words(self, shell: Shell, forces: FloatArray) -> str:
+        """Total and number of nodes."""
+        return f"{self.given}, {self.extent(shell)}" + ", turns with the micro-rotation" * self.follower
+
+    def size(self, forces: FloatArray) -> Size:
+        """Its total."""
+        return Size(moment=float(np.linalg.norm(self.value)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,28 +17,32 @@ symmetric but for pairs of nodes of the rim, and wholly where these are held. (H
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
+from magshell.keys import HISTORY, Key
 from magshell.mesh.edges import find_edges
-from magshell.model.loads.checks import keep_history, located, number
+from magshell.mesh.geometry import centres, unit
+from magshell.model.loads.checks import number
 from magshell.model.loads.cross import cross_matrix
 from magshell.model.loads.dead import nodal
+from magshell.model.loads.distribution import nodal_areas
 from magshell.model.loads.functions import loaded
-from magshell.model.loads.load import Applied, Pairs
+from magshell.model.loads.load import Applied, Arrows, Load, Pairs, Size
 from magshell.model.shell import Shell
 from magshell.shell.shape_functions import gauss_legendre
 from magshell.shell.state import State
+from magshell.units import FORCE, STRESS, Dimension, show
 
 POINTS, POINTS_WITH_TRIANGLES = 3, 5
 
 
 @dataclass(frozen=True, eq=False)
-class Pressure:
+class Pressure(Load):
     """A pressure on the mid-surface, normal to it as it deforms and per deformed area.
 
     Parameters
@@ -52,18 +56,23 @@ class Pressure:
     """
 
     kind: ClassVar[str] = "pressure"
+    keys: ClassVar[Mapping[str, Key]] = {
+        "group": Key("Name", "Group of elements that it acts on."),
+        "pressure": Key("Pressure", "Per area of the deformed mid-surface; positive pushes along its normal."),
+        "history": HISTORY,
+    }
+    amount: ClassVar[tuple[str, Dimension]] = ("pressure", STRESS)
+    letter: ClassVar[str] = "$p$"
+    on: ClassVar[Literal["nodes", "elements"]] = "elements"
 
     group: str
     pressure: float
     history: Sequence[float] | None = None
 
-    def __post_init__(self) -> None:
-        keep_history(self)
-
     def applied(self, shell: Shell, normals: FloatArray) -> Applied:
         """The load on a mesh; conservative where the group is a closed surface (see the module on the others)."""
-        with located(self):
-            members = shell.mesh.elements_of(self.group)
+        with self.located():
+            members = self.members(shell)
             elements = shell.mesh.elements[members]
             pressure = number("pressure", self.pressure)
         parent, weights = gauss_legendre(POINTS_WITH_TRIANGLES if shell.mesh.triangles[members].any() else POINTS)
@@ -75,6 +84,26 @@ class Pressure:
             np.asarray(functions.derivatives),
             not find_edges(elements).boundary.size,
         )
+
+    def words(self, shell: Shell, forces: FloatArray) -> str:
+        """Side and force on the undeformed area."""
+        force = float(self.pressure) * float(nodal_areas(shell, self.members(shell)).sum())
+        side = "along" if self.pressure > 0.0 else "against"
+        return (
+            f"{self.given}, {side} the normal of {self.extent(shell)}, at first {show(abs(force), FORCE)} on their area"
+        )
+
+    def size(self, forces: FloatArray) -> Size:
+        """The pressure."""
+        return Size(pressure=abs(float(self.pressure)))
+
+    def arrows(self, shell: Shell, forces: FloatArray) -> Arrows:
+        """Along or against the normal."""
+        points, elements = shell.mesh.points, shell.mesh.elements[self.members(shell)]
+        x = points[elements]
+        normals = unit(np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1]))
+        name = f"{self.group}: {self.kind}, {self.magnitude}"
+        return Arrows(centres(points, elements), np.sign(self.pressure) * normals, name)
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Literal
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from magshell.arrays import FloatArray
-from magshell.model.loads.checks import keep_history, located, vector
+from magshell.keys import HISTORY, Key
+from magshell.model.loads.checks import vector
 from magshell.model.loads.dead import DeadForces
 from magshell.model.loads.distribution import nodal_areas
-from magshell.model.loads.load import Applied
+from magshell.model.loads.load import Applied, Load, Size, resultant
 from magshell.model.shell import Shell
+from magshell.units import STRESS, Dimension
 
 
 @dataclass(frozen=True, eq=False)
-class Traction:
+class Traction(Load):
     """A force per area of the undeformed mid-surface, which keeps its direction.
 
     Parameters
@@ -31,16 +34,25 @@ class Traction:
     """
 
     kind: ClassVar[str] = "traction"
+    keys: ClassVar[Mapping[str, Key]] = {
+        "group": Key("Name", "Group of elements that it acts on."),
+        "traction": Key("StressVector", "Force per area of the undeformed mid-surface."),
+        "history": HISTORY,
+    }
+    amount: ClassVar[tuple[str, Dimension]] = ("traction", STRESS)
+    letter: ClassVar[str] = "$t$"
+    on: ClassVar[Literal["nodes", "elements"]] = "elements"
 
     group: str
     traction: ArrayLike
     history: Sequence[float] | None = None
 
-    def __post_init__(self) -> None:
-        keep_history(self)
-
     def applied(self, shell: Shell, normals: FloatArray) -> Applied:
         """The load on a mesh."""
-        with located(self):
-            areas = nodal_areas(shell, shell.mesh.elements_of(self.group))
+        with self.located():
+            areas = nodal_areas(shell, self.members(shell))
             return DeadForces(areas[:, None] * vector("traction", self.traction))
+
+    def size(self, forces: FloatArray) -> Size:
+        """Its resultant."""
+        return Size(force=float(np.linalg.norm(resultant(forces))))

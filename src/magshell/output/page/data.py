@@ -8,18 +8,20 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.evaluation.outputs import OUTPUTS, Output, find, without_round_off
+from magshell.evaluation.outputs import OUTPUTS, Output, find
 from magshell.output.curve import LOAD_TEXT, abscissa, displacements, load_per_mT
 from magshell.output.labels import plain, shown_unit
 from magshell.output.page.arrays import quantised, span, text
 from magshell.output.page.stencils import stencils
+from magshell.output.rounding import without_round_off
 from magshell.output.scene import MOST_ELEMENTS_WITH_EDGES, best_axes
 from magshell.output.tessellation import element_edges
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh
     from magshell.solver.critical import CriticalPoint
-    from magshell.solver.path import Path, Step
+    from magshell.solver.path import Path
+    from magshell.solver.step import Step
 
 DIRECTIONS = 80
 MOST_ARROWS = 400

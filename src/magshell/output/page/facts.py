@@ -12,7 +12,8 @@ import numpy as np
 from magshell.units import FLUX_DENSITY, LENGTH, STRESS, show
 
 if TYPE_CHECKING:
-    from magshell.solver.path import Path, Step
+    from magshell.solver.path import Path
+    from magshell.solver.step import Step
 
 Facts: TypeAlias = Sequence[tuple[str, str]]
 PEOPLE = {

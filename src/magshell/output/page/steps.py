@@ -9,7 +9,8 @@ import numpy as np
 from magshell.evaluation.outputs import OUTPUTS
 
 if TYPE_CHECKING:
-    from magshell.solver.path import Path, Step
+    from magshell.solver.path import Path
+    from magshell.solver.step import Step
 
 MOST_BYTES = 100_000_000
 """Of the numbers in a page, if all changed in every step. Measured without a graphics card, a page of 90 MB opens in

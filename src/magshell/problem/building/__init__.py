@@ -6,28 +6,22 @@ import pathlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from magshell import magnetics, materials
+from magshell.drawing import drawing
 from magshell.linalg import make_solver
-from magshell.magnetics import UniformField
-from magshell.materials import Material
+from magshell.magnetics import COUPLINGS, UniformField
+from magshell.materials import MATERIALS, Material, keys_of
 from magshell.mesh import Mesh
-from magshell.model.loads import Force, Gravity, Load, Moment, Pressure, Traction
+from magshell.model.loads import LOADS, Load
 from magshell.model.model import Model
 from magshell.model.shell import Shell
 from magshell.model.stages import Stage
-from magshell.model.supports import Clamp, Prescribe, SimpleSupport, Support, SymmetryPlane
+from magshell.model.supports import SUPPORTS, Support
 from magshell.problem import schema
 from magshell.problem.building.located import at
 from magshell.problem.building.mesh import build_mesh
 from magshell.problem.building.remanence import build_remanence
 from magshell.problem.schema import ProblemFile
 from magshell.solver.settings import Settings
-
-COUPLINGS = {
-    "couple": magnetics.MicropolarCouple(),
-    "micro-rotation": magnetics.MicroRotationEnergy(),
-    "deformation-gradient": magnetics.DeformationGradientEnergy(),
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,10 +58,7 @@ class Problem:
         return f"Problem('{self.source}': {self.title})\n{self.model!r}"
 
     def _repr_html_(self) -> str:
-        from magshell.output.notebook import model_html
-        from magshell.problem.report import describe
-
-        return model_html(self.model, self.title, describe(self).warnings)
+        return str(drawing("problem_html")(self))
 
 
 def build(file: ProblemFile, source: str, text: str = "", folder: pathlib.Path = pathlib.Path()) -> Problem:
@@ -102,13 +93,13 @@ def build(file: ProblemFile, source: str, text: str = "", folder: pathlib.Path =
         )
         field = _field(file.field)
         supports = _supports(file.supports, mesh)
-        loads = _loads(file.loads, mesh)
+        loads = _loads(file.loads, shell)
         _probes_exist(file.probes, mesh)
         model = Model(
             shell,
             supports=supports,
             field=field,
-            coupling=COUPLINGS[file.field.coupling],
+            coupling=COUPLINGS[file.field.coupling](),
             probes=file.probes,
             loads=loads,
             stages=_stages(file.stages),
@@ -118,20 +109,14 @@ def build(file: ProblemFile, source: str, text: str = "", folder: pathlib.Path =
         return Problem(source, file, model, settings, text, folder)
 
 
-def _material(table: schema.Material, shell: schema.ShellTable) -> Material:
-    eta, length = table.coupling_modulus, table.length_scale
-    usual = (table.shear_modulus / 10.0, shell.thickness / 10.0) if shell.micro_rotation else (0.0, 0.0)
-    parameters = {
-        "shear_modulus": table.shear_modulus,
-        "lame_lambda": table.lame_lambda,
-        "coupling_modulus": usual[0] if eta is None else eta,
-        "length_scale": usual[1] if length is None else length,
-    }
-    if isinstance(table, schema.MooneyRivlin):
-        return materials.MicropolarMooneyRivlin(**parameters, second_invariant_share=table.second_invariant_share)
-    if isinstance(table, schema.StVenantKirchhoff):
-        return materials.MicropolarStVenantKirchhoff(**parameters)
-    return materials.MicropolarNeoHookean(**parameters)
+def _material(table: schema.MaterialTable, shell: schema.ShellTable) -> Material:
+    law = MATERIALS[table.law]
+    parameters = {key: getattr(table, key) for key in keys_of(law)}
+    if parameters["coupling_modulus"] is None:
+        parameters["coupling_modulus"] = table.shear_modulus / 10.0 if shell.micro_rotation else 0.0
+    if parameters["length_scale"] is None:
+        parameters["length_scale"] = shell.thickness / 10.0 if shell.micro_rotation else 0.0
+    return law(**parameters)
 
 
 def _field(table: schema.FieldTable) -> UniformField:
@@ -146,56 +131,25 @@ def _stages(tables: tuple[schema.StageTable, ...]) -> list[Stage]:
     return stages
 
 
-def _supports(tables: tuple[schema.Support, ...], mesh: Mesh) -> list[Support]:
+def _supports(tables: tuple[schema.SupportTable, ...], mesh: Mesh) -> list[Support]:
     supports: list[Support] = []
     for number, table in enumerate(tables):
         with at(f"supports[{number}].group"):
             mesh.nodes_of(table.group)
         with at(f"supports[{number}]"):
-            supports.append(_support(table))
+            cls = SUPPORTS[table.kind]
+            supports.append(cls(**{key: getattr(table, key) for key in cls.keys}))
     return supports
 
 
-def _support(table: schema.Support) -> Support:
-    match table:
-        case schema.ClampTable():
-            return Clamp(table.group)
-        case schema.SimpleTable():
-            return SimpleSupport(table.group)
-        case schema.SymmetryTable():
-            return SymmetryPlane(table.group, table.normal)
-        case schema.PrescribeTable():
-            return Prescribe(table.group, table.field, table.component, table.value, table.history)
-
-
-def _loads(tables: tuple[schema.Load, ...], mesh: Mesh) -> list[Load]:
+def _loads(tables: tuple[schema.LoadTable, ...], shell: Shell) -> list[Load]:
     loads: list[Load] = []
     for number, table in enumerate(tables):
+        cls = LOADS[table.kind]
+        loads.append(cls(**{key: getattr(table, key) for key in cls.keys}))
         with at(f"loads[{number}].group"):
-            _loaded_group(table, mesh)
-        loads.append(_load(table))
+            loads[-1].members(shell)
     return loads
-
-
-def _loaded_group(table: schema.Load, mesh: Mesh) -> None:
-    if isinstance(table, schema.ForceTable | schema.MomentTable):
-        mesh.nodes_of(table.group)
-    elif table.group is not None:
-        mesh.elements_of(table.group)
-
-
-def _load(table: schema.Load) -> Load:
-    match table:
-        case schema.ForceTable():
-            return Force(table.group, table.total, table.follower, table.history)
-        case schema.MomentTable():
-            return Moment(table.group, table.total, table.follower, table.history)
-        case schema.TractionTable():
-            return Traction(table.group, table.traction, table.history)
-        case schema.PressureTable():
-            return Pressure(table.group, table.pressure, table.history)
-        case schema.GravityTable():
-            return Gravity(table.acceleration, table.group, table.history)
 
 
 def _probes_exist(probes: Mapping[str, tuple[float, float, float]], mesh: Mesh) -> None:

@@ -6,19 +6,15 @@ import pathlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-import numpy as np
-
 from magshell.errors import InputError
-from magshell.magnetics import remanence
-from magshell.magnetics.remanence import Remanence
+from magshell.magnetics.remanence import REMANENCES, Remanence, by_group
 from magshell.mesh import Mesh
 from magshell.mesh.geometry import centres
 from magshell.problem import schema
 from magshell.problem.building.located import at
-from magshell.problem.schema.remanence import Template
 
 
-def build_remanence(entries: tuple[schema.Remanence, ...], mesh: Mesh, folder: pathlib.Path) -> Remanence:
+def build_remanence(entries: tuple[schema.RemanenceTable, ...], mesh: Mesh, folder: pathlib.Path) -> Remanence:
     """The remanence that the entries describe together."""
     if len(entries) == 1 and entries[0].group is None:
         with _at_entry(0):
@@ -39,8 +35,8 @@ def build_remanence(entries: tuple[schema.Remanence, ...], mesh: Mesh, folder: p
         with _at_entry(number):
             one = _one_remanence(entry, folder)
             grouped |= dict.fromkeys(entry.group, one)
-            _tried(remanence.by_group(dict.fromkeys(entry.group, one)), mesh)
-    return remanence.by_group(grouped)
+            _tried(by_group(dict.fromkeys(entry.group, one)), mesh)
+    return by_group(grouped)
 
 
 @contextmanager
@@ -59,46 +55,11 @@ def _tried(one: Remanence, mesh: Mesh) -> Remanence:
     return one
 
 
-def _one_remanence(entry: schema.Remanence, folder: pathlib.Path) -> Remanence:
-    match entry:
-        case schema.ConstantRemanence():
-            if entry.vector is not None:
-                return remanence.constant(entry.vector)
-            direction = np.array(entry.direction)
-            return remanence.constant((entry.magnitude or 0.0) * direction / np.linalg.norm(direction))
-        case schema.MeridionalRemanence():
-            return remanence.meridional(entry.magnitude, entry.axis, entry.mirrored)
-        case schema.CircumferentialRemanence():
-            return remanence.circumferential(entry.magnitude, entry.axis, entry.towards)
-        case schema.RadialRemanence():
-            return remanence.radial(entry.magnitude, entry.axis, entry.through, entry.inward)
-        case schema.TangentialRemanence():
-            return remanence.tangential(entry.magnitude, entry.direction)
-        case schema.CurveRemanence():
-            return remanence.along_curve(entry.curve, entry.magnitude, entry.towards)
-        case schema.ProfileRemanence():
-            return remanence.profile(
-                entry.magnitude, entry.positions, entry.along, entry.direction, entry.angle, entry.towards, entry.origin
-            )
-        case schema.FileRemanence():
-            return remanence.from_file(folder / entry.file, entry.flux_density_unit, entry.length_unit, entry.tolerance)
-        case schema.RolledRemanence() | schema.FoldedRemanence() | schema.DeformedRemanence():
-            return remanence.template(_shape(entry, folder), entry.magnitude, entry.direction)
-
-
-def _shape(entry: Template, folder: pathlib.Path) -> remanence.Shape:
-    match entry:
-        case schema.RolledRemanence():
-            return remanence.rolled(entry.radius, entry.through, entry.along, entry.towards)
-        case schema.DeformedRemanence():
-            return remanence.displaced_from_file(folder / entry.displacements, entry.length_unit)
-    folds = []
-    for number, fold in enumerate(entry.folds):
-        try:
-            folds.append(remanence.Fold(fold.through, fold.along, fold.towards, fold.angle, fold.radius))
-        except InputError as error:
-            raise InputError(f".folds[{number}]: {str(error).removeprefix('remanence: ')}") from None
-    return remanence.folded(*folds)
+def _one_remanence(entry: schema.RemanenceTable, folder: pathlib.Path) -> Remanence:
+    way = REMANENCES[entry.kind]
+    values = way.values(entry)
+    files = {key: folder / values[key] for key, about in way.keys.items() if about.kind == "FileName"}
+    return way.make(**{**values, **files})
 
 
 def _listed(mesh: Mesh) -> str:

@@ -6,27 +6,20 @@ know, such as whether a group exists, is checked in `magshell.problem.building`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Annotated, ClassVar, get_args
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from typing import Annotated, Any, ClassVar, Union, get_args
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, create_model
 
+from magshell.magnetics.remanence import REMANENCES
+from magshell.materials import MATERIALS, keys_of
+from magshell.model.loads import LOADS
+from magshell.model.supports import SUPPORTS
 from magshell.problem import fields as f
-from magshell.problem.schema.loading import (
-    ClampTable,
-    FieldTable,
-    ForceTable,
-    GravityTable,
-    Load,
-    MomentTable,
-    PrescribeTable,
-    PressureTable,
-    SimpleTable,
-    Support,
-    SymmetryTable,
-    TractionTable,
-)
-from magshell.problem.schema.material import Material, MooneyRivlin, NeoHookean, ShellTable, StVenantKirchhoff
+from magshell.problem.schema.described import table_of
+from magshell.problem.schema.loading import FieldTable, LoadTable, SupportTable
+from magshell.problem.schema.material import MaterialTable, ShellTable
 from magshell.problem.schema.mesh import (
     Annulus,
     Block,
@@ -39,21 +32,7 @@ from magshell.problem.schema.mesh import (
     SpherePatch,
     TheMesh,
 )
-from magshell.problem.schema.remanence import (
-    CircumferentialRemanence,
-    ConstantRemanence,
-    CurveRemanence,
-    DeformedRemanence,
-    FileRemanence,
-    FoldedRemanence,
-    FoldTable,
-    MeridionalRemanence,
-    ProfileRemanence,
-    RadialRemanence,
-    Remanence,
-    RolledRemanence,
-    TangentialRemanence,
-)
+from magshell.problem.schema.remanence import FoldTable, RemanenceTable
 from magshell.problem.schema.solving import SolverTable, StageTable
 from magshell.problem.schema.table import Table
 
@@ -61,51 +40,33 @@ __all__ = [
     "Annulus",
     "Block",
     "Blocks",
-    "CircumferentialRemanence",
-    "ClampTable",
-    "ConstantRemanence",
-    "CurveRemanence",
     "Cylinder",
-    "DeformedRemanence",
     "FieldTable",
-    "FileRemanence",
     "FoldTable",
-    "FoldedRemanence",
-    "ForceTable",
-    "GravityTable",
-    "Load",
-    "Material",
-    "MeridionalRemanence",
+    "LoadTable",
+    "MaterialTable",
     "Mesh",
     "MeshFile",
-    "MomentTable",
-    "MooneyRivlin",
-    "NeoHookean",
-    "PrescribeTable",
-    "PressureTable",
     "ProblemFile",
-    "ProfileRemanence",
-    "RadialRemanence",
     "Rectangle",
-    "Remanence",
-    "RolledRemanence",
+    "RemanenceTable",
     "Selection",
     "ShellTable",
-    "SimpleTable",
     "SolverTable",
     "SpherePatch",
-    "StVenantKirchhoff",
     "StageTable",
-    "Support",
-    "SymmetryTable",
+    "SupportTable",
     "Table",
-    "TangentialRemanence",
-    "TractionTable",
+    "load_tables",
+    "material_tables",
+    "problem_file",
+    "remanence_tables",
+    "support_tables",
 ]
 
 
 class ProblemFile(Table):
-    """The whole file."""
+    """The whole file; `problem_file` has the tables of all that is registered."""
 
     # Key that chooses among the kinds of a table, and where in the path of an error pydantic puts the choice.
     chosen_by: ClassVar[dict[str, tuple[str, int]]] = {
@@ -120,11 +81,11 @@ class ProblemFile(Table):
     description: str = ""
     mesh: TheMesh
     shell: ShellTable
-    material: Annotated[Material, Field(discriminator="law")]
-    remanence: tuple[Annotated[Remanence, Field(discriminator="kind")], ...] = ()
+    material: MaterialTable
+    remanence: tuple[RemanenceTable, ...] = ()
     field: FieldTable = FieldTable(flux_density=(0.0, 0.0, 0.0))
-    loads: tuple[Annotated[Load, Field(discriminator="kind")], ...] = ()
-    supports: Annotated[tuple[Annotated[Support, Field(discriminator="kind")], ...], BeforeValidator(f.not_empty)]
+    loads: tuple[LoadTable, ...] = ()
+    supports: tuple[SupportTable, ...]
     stages: tuple[StageTable, ...] = ()
     probes: dict[f.ProbeName, f.Position] = {}
     solver: SolverTable = SolverTable()
@@ -132,6 +93,50 @@ class ProblemFile(Table):
     def files(self) -> list[tuple[str, str]]:
         """Key, as in `remanence[1].file`, and name of every file that the problem names, in the order of the keys."""
         return list(_files(self, ""))
+
+
+def material_tables() -> dict[str, type[Table]]:
+    """The tables of all material laws, by name."""
+    return {name: table_of("law", name, law, keys_of(law), MaterialTable) for name, law in MATERIALS.items()}
+
+
+def remanence_tables() -> dict[str, type[Table]]:
+    """The tables of all ways to magnetise, by kind."""
+    return {name: table_of("kind", name, way.make, way.keys, RemanenceTable) for name, way in REMANENCES.items()}
+
+
+def load_tables() -> dict[str, type[Table]]:
+    """The tables of all loads, by kind."""
+    return {name: table_of("kind", name, load, load.keys, LoadTable) for name, load in LOADS.items()}
+
+
+def support_tables() -> dict[str, type[Table]]:
+    """The tables of all supports, by kind."""
+    return {name: table_of("kind", name, one, one.keys, SupportTable) for name, one in SUPPORTS.items()}
+
+
+def problem_file() -> type[ProblemFile]:
+    """The model of a file, with all that is registered now."""
+    return _problem_file(*(tuple(registry.items()) for registry in (MATERIALS, REMANENCES, LOADS, SUPPORTS)))
+
+
+@lru_cache(maxsize=1)
+def _problem_file(*registered: tuple[tuple[str, Any], ...]) -> type[ProblemFile]:
+    entries: dict[str, Any] = {
+        "material": (_one_of(material_tables(), "law"), ...),
+        "remanence": (_list_of(_one_of(remanence_tables(), "kind")), ()),
+        "loads": (_list_of(_one_of(load_tables(), "kind")), ()),
+        "supports": (Annotated[_list_of(_one_of(support_tables(), "kind")), BeforeValidator(f.not_empty)], ...),
+    }
+    return create_model("ProblemFile", __base__=ProblemFile, **entries)
+
+
+def _one_of(tables: Mapping[str, type[Table]], choice: str) -> Any:
+    return Annotated[Union[tuple(tables.values())], Field(discriminator=choice)]  # noqa: UP007
+
+
+def _list_of(entry: Any) -> Any:
+    return tuple.__class_getitem__((entry, ...))
 
 
 def _files(value: object, where: str) -> Iterator[tuple[str, str]]:

@@ -1,10 +1,8 @@
-"""The table `field` and the entries of `supports` and `loads`."""
+"""The table `field`, and what the entries of `supports` and `loads` have in common."""
 
 from __future__ import annotations
 
-from typing import Literal, TypeAlias
-
-from pydantic import StrictBool, ValidationInfo, field_validator, model_validator
+from pydantic import model_validator
 
 from magshell.problem import fields as f
 from magshell.problem.schema.table import Table, key_error
@@ -18,7 +16,7 @@ class FieldTable(Table):
     rotation_axis: f.Direction | None = None
     rotation: f.Rotation | None = None
     stops: tuple[f.PositiveFluxDensity, ...] = ()
-    coupling: Literal["couple", "micro-rotation", "deformation-gradient"] = "couple"
+    coupling: f.Coupling = "couple"
 
     @model_validator(mode="after")
     def _axis_and_angles_go_together(self) -> FieldTable:
@@ -39,98 +37,14 @@ class FieldTable(Table):
         return self
 
 
-class _Support(Table):
+class SupportTable(Table):
+    """What the tables of all supports have."""
+
+    kind: str
     group: f.Name
 
 
-class ClampTable(_Support):
-    """No displacement, no rotation; the thickness stretch stays free."""
+class LoadTable(Table):
+    """What the tables of all loads have."""
 
-    kind: Literal["clamp"]
-
-
-class SimpleTable(_Support):
-    """No displacement."""
-
-    kind: Literal["simple"]
-
-
-class SymmetryTable(_Support):
-    """Mirror plane with this normal."""
-
-    kind: Literal["symmetry"]
-    normal: f.Direction
-
-
-class PrescribeTable(_Support):
-    """A nodal field, or one component of it, that reaches `value`."""
-
-    kind: Literal["prescribe"]
-    field: Literal["u", "w", "phi", "omega"]
-    component: Literal[1, 2, 3] | None = None
-    value: float | tuple[float, float, float] = 0.0
-    history: f.History | None = None
-
-    @field_validator("value", mode="before")
-    @classmethod
-    def _has_the_unit_of_the_field(cls, value: object, info: ValidationInfo) -> object:
-        if "field" not in info.data:
-            return 0.0
-        one = info.data["field"] == "phi" or info.data.get("component") is not None
-        return f.prescribed_value(value, info.data["field"], one)
-
-    @model_validator(mode="after")
-    def _phi_is_a_scalar(self) -> PrescribeTable:
-        if self.field == "phi" and self.component is not None:
-            raise key_error("component", "makes no sense with the field phi, which has only one; leave it out")
-        return self
-
-
-class _Load(Table):
-    history: f.History | None = None
-
-
-class ForceTable(_Load):
-    """A force, dead or turning with the micro-rotation."""
-
-    kind: Literal["force"]
-    group: f.Name
-    total: f.ForceVector
-    follower: StrictBool = False
-
-
-class MomentTable(_Load):
-    """A moment on the micro-rotation, dead or turning with it, or on the director."""
-
-    kind: Literal["moment"]
-    group: f.Name
-    total: f.MomentVector
-    follower: StrictBool = False
-
-
-class TractionTable(_Load):
-    """A dead force per undeformed area."""
-
-    kind: Literal["traction"]
-    group: f.Name
-    traction: f.StressVector
-
-
-class PressureTable(_Load):
-    """A pressure along the deformed normal."""
-
-    kind: Literal["pressure"]
-    group: f.Name
-    pressure: f.Pressure
-
-
-class GravityTable(_Load):
-    """Weight."""
-
-    kind: Literal["gravity"]
-    acceleration: f.AccelerationVector
-    group: f.Name | None = None
-
-
-Support: TypeAlias = ClampTable | SimpleTable | SymmetryTable | PrescribeTable
-Load: TypeAlias = ForceTable | MomentTable | TractionTable | PressureTable | GravityTable
+    kind: str

@@ -1,4 +1,4 @@
-"""Pieces of text that the parts of a report share."""
+"""Vectors, quantities and counts in words."""
 
 from __future__ import annotations
 
@@ -22,3 +22,8 @@ def quantity(value: float | tuple[float, ...], dimension: Dimension) -> str:
 def counted(number: int, what: str) -> str:
     """The number of something, in the plural unless it is one."""
     return f"{number} {what}{'s' if number != 1 else ''}"
+
+
+def towards(direction: Iterable[float] | None) -> str:
+    """A preferred direction, as an addition; empty without one."""
+    return "" if direction is None else f", towards {vector(direction)}"

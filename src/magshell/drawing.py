@@ -1,0 +1,29 @@
+"""The one door from objects to their pictures.
+
+A mesh shows itself in a notebook and a path saves itself, but what draws them stands on what they are. So the functions
+that draw are found here by name when a picture is asked for; nothing else in the package looks upward.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any
+
+HOMES = {
+    "mesh_html": "magshell.output.notebook",
+    "model_html": "magshell.output.notebook",
+    "path_html": "magshell.output.notebook",
+    "buckling_html": "magshell.output.notebook",
+    "problem_html": "magshell.problem.report",
+    "save_path": "magshell.output.vtu",
+    "write_page": "magshell.output.page",
+    "animate": "magshell.output.animation",
+    "draw_shape": "magshell.output.pictures",
+}
+
+
+def drawing(name: str) -> Callable[..., Any]:
+    """The function of this name that draws or writes an object."""
+    found: Callable[..., Any] = getattr(import_module(HOMES[name]), name)
+    return found

@@ -1,0 +1,210 @@
+"""The recipes of `docs/layout.md` do what they say: each program runs, and a problem file may use what it adds."""
+
+from __future__ import annotations
+
+import importlib
+import pathlib
+import re
+import sys
+from collections.abc import Callable, Iterator
+from typing import Annotated, ClassVar, NamedTuple
+
+import numpy as np
+import pytest
+from problem_files import BLOCKS, STRIP, changed
+
+import magshell as ms
+from magshell import cli
+from magshell.evaluation.outputs import OUTPUTS
+from magshell.keys import Key
+from magshell.magnetics import COUPLINGS
+from magshell.magnetics.remanence import REMANENCES
+from magshell.materials import MATERIALS, keys_of
+from magshell.model.loads import LOADS
+from magshell.model.supports import SUPPORTS
+from magshell.output import rendering
+from magshell.output.vtu import grid
+from magshell.problem.building import build
+from magshell.problem.reading import check, parse
+from magshell.problem.schema import load_tables, material_tables
+from magshell.shell.elements import ELEMENTS
+
+LAYOUT = (pathlib.Path(__file__).parents[2] / "docs" / "layout.md").read_text()
+RECIPES = dict(re.findall(r"^## (Add .+?)\n(.*?)(?=^## |\Z)", LAYOUT, re.MULTILINE | re.DOTALL))
+REGISTRIES = (COUPLINGS, ELEMENTS, LOADS, MATERIALS, OUTPUTS, REMANENCES, SUPPORTS)
+# A law is compiled for most of a minute: `tests/materials` solves with one of a user's own file.
+ELSEWHERE = {"Add a material law"}
+
+
+def can_draw() -> bool:
+    """Whether this machine can draw in three dimensions."""
+    try:
+        rendering.require_rendering()
+    except rendering.RenderingUnavailable:
+        return False
+    return True
+
+
+CAN_DRAW = can_draw()
+
+
+def block(recipe: str, language: str) -> str:
+    found = re.findall(rf"^```{language}\n(.*?)^```", RECIPES[recipe], re.MULTILINE | re.DOTALL)
+    assert len(found) == 1, f"{recipe}: {len(found)} blocks of {language}"
+    return str(found[0])
+
+
+@pytest.fixture
+def registries() -> Iterator[None]:
+    """What a recipe registers is forgotten afterwards."""
+    before = [dict(registry) for registry in REGISTRIES]
+    yield
+    for registry, entries in zip(REGISTRIES, before, strict=True):
+        registry.clear()
+        registry.update(entries)
+
+
+@pytest.fixture
+def follow(registries: None, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], object]:
+    """Run the program of a recipe, as a module of its own."""
+    monkeypatch.syspath_prepend(tmp_path)
+
+    def run(recipe: str) -> object:
+        name = recipe.replace(" ", "_")
+        (tmp_path / f"{name}.py").write_text(block(recipe, "python"))
+        module = importlib.import_module(name)
+        monkeypatch.delitem(sys.modules, name)
+        return module
+
+    return run
+
+
+@pytest.fixture
+def used(tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]) -> Callable[[str], tuple[str, ms.Path]]:
+    """Check, show and solve a problem file: what `check` says, and the path."""
+
+    def use(text: str) -> tuple[str, ms.Path]:
+        file, picture = tmp_path / "part.toml", tmp_path / "part.png"
+        file.write_text(text)
+        assert cli.main(["check", str(file)]) == 0
+        said = capsys.readouterr().out
+        if CAN_DRAW:
+            assert cli.main(["show", str(file), "--out", str(picture)]) == 0
+            assert picture.read_bytes().startswith(b"\x89PNG")
+        problem = ms.problem.load(file)
+        return said, ms.solve(problem.model, problem.settings)
+
+    return use
+
+
+def tip(path: ms.Path) -> np.ndarray:
+    return path.probe("tip").u[-1]
+
+
+def tip_of(text: str) -> np.ndarray:
+    """Of a problem file that needs nothing new."""
+    file = check(parse(text, "plain"), "plain")
+    return tip(ms.solve(build(file, "plain").model))
+
+
+def test_every_recipe_with_a_program_is_here() -> None:
+    source = pathlib.Path(__file__).read_text()
+    programs = {name for name, text in RECIPES.items() if "```python" in text}
+    assert programs - ELSEWHERE == {name for name in RECIPES if f'follow("{name}")' in source}
+
+
+def test_a_load(follow: Callable, used: Callable, tmp_path: pathlib.Path) -> None:
+    follow("Add a load")
+    said, path = used(BLOCKS + block("Add a load", "toml"))
+    assert re.search(r"whole shell +push 4 Pa, 4 elements, in all \(0, 0, 0\.4 mN\)", said)
+    traction = '[[loads]]\nkind = "traction"\ngroup = "{}"\ntraction = [0, 0, "4 Pa"]\n'
+    same = tip_of(BLOCKS + traction.format("one") + traction.format("two"))
+    assert tip(path) == pytest.approx(same, rel=1e-9, abs=1e-15)
+    assert abs(tip(path)[2] - tip_of(BLOCKS)[2]) > 1e-5
+    slip = tmp_path / "slip.toml"
+    slip.write_text(STRIP + '[[loads]]\nkind = "push"\npusch = "4 Pa"\n')
+    with pytest.raises(
+        ms.InputError, match=r"slip\.toml: loads\[0\]\.pusch: is an unknown key\. Did you mean 'push'\?"
+    ):
+        ms.problem.load(slip)
+
+
+def test_a_way_to_magnetise(follow: Callable, used: Callable) -> None:
+    follow("Add a way to magnetise")
+    plain = BLOCKS[BLOCKS.index("[[remanence]]") : BLOCKS.index("[field]")]
+    said, path = used(BLOCKS.replace(plain, block("Add a way to magnetise", "toml")))
+    assert re.search(r"everywhere +143 mT, in stripes of 10 mm", said)
+    group = '[[remanence]]\nkind = "constant"\ngroup = "{}"\nvector = ["{} mT", 0, 0]\n'
+    same = tip_of(BLOCKS.replace(plain, group.format("one", 143) + group.format("two", -143)))
+    assert tip(path) == pytest.approx(same, rel=1e-9, abs=1e-15)
+
+
+def test_a_support(follow: Callable, used: Callable) -> None:
+    follow("Add a support")
+    said, path = used(STRIP + block("Add a support", "toml"))
+    assert re.search(r"right +roller, 3 nodes", said)
+    assert abs(tip(path)[2]) < 1e-12
+    assert abs(tip_of(STRIP)[2]) > 1e-4
+
+
+def test_an_element_type(follow: Callable, used: Callable) -> None:
+    follow("Add an element type")
+    _, path = used(changed(STRIP, ('thickness = "1 mm"', 'thickness = "1 mm"\nelement = "mine"')))
+    assert path.model.shell.element is ELEMENTS["mine"]
+    assert tip(path)[2] == pytest.approx(tip_of(STRIP)[2], rel=0.1)
+
+
+def test_a_quantity(follow: Callable, used: Callable, tmp_path: pathlib.Path) -> None:
+    follow("Add a quantity to the results")
+    _, path = used(STRIP)
+    step = path.steps[-1]
+    np.testing.assert_array_equal(
+        grid(path.discretisation, step).point_data["distance"], np.linalg.norm(step.state.u, axis=1)
+    )
+    path.view(tmp_path / "view.html", color="distance")
+    if CAN_DRAW:
+        assert path.plot(color="s").size
+
+
+def test_an_observer(follow: Callable, capsys: pytest.CaptureFixture[str]) -> None:
+    module = follow("Add an observer")
+    said = capsys.readouterr().out.splitlines()
+    assert said[0] == "753 unknowns"
+    assert said[-1] == f"1.000  {module.path.steps[-1].state.u[:, 2].max():.6f} m"
+
+
+def test_a_law_is_known_by_its_name_in_the_registry(registries: None, used: Callable) -> None:
+    MATERIALS["mine"], COUPLINGS["ours"] = MATERIALS["micropolar-neo-hookean"], COUPLINGS["couple"]
+    own = changed(STRIP, ('"micropolar-neo-hookean"', '"mine"'), ("[field]", '[field]\ncoupling = "ours"'))
+    said, path = used(own)
+    assert re.search("law +mine", said)
+    assert re.search("coupling law +ours", said)
+    assert tip(path) == pytest.approx(tip_of(STRIP), rel=1e-12)
+
+
+def test_a_key_of_a_law_is_described_beside_its_parameter(registries: None, tmp_path: pathlib.Path) -> None:
+    class Stiffening(NamedTuple):
+        shear_modulus: float
+        lame_lambda: float
+        coupling_modulus: float
+        length_scale: float
+        locking_stress: Annotated[float, Key("PositiveStress", "Where it locks.")] = 1e5
+
+    assert list(keys_of(Stiffening))[-1] == "locking_stress"
+    MATERIALS["stiffening"] = Stiffening
+    table = material_tables()["stiffening"]
+    common = {"law": "stiffening", "shear_modulus": "1 MPa", "lame_lambda": "3 MPa"}
+    assert table.model_validate(common).locking_stress == 1e5
+    assert table.model_validate({**common, "locking_stress": "2 kPa"}).locking_stress == 2e3
+    text = changed(STRIP, ('law = "micropolar-neo-hookean"', 'law = "stiffening"\nlocking_stress = "-2 kPa"'))
+    with pytest.raises(ms.InputError, match=r"a: material\.locking_stress: '-2 kPa' is not positive"):
+        check(parse(text, "a"), "a")
+
+
+def test_a_key_of_an_unknown_kind_is_refused(registries: None) -> None:
+    class Slip(LOADS["force"]):  # type: ignore[misc]
+        keys: ClassVar = {**LOADS["force"].keys, "total": Key("ForceVektor", "Its sum.")}
+
+    LOADS["slip"] = Slip
+    with pytest.raises(TypeError, match=r"'ForceVektor' of total is no kind of value\. Did you mean 'ForceVector'"):
+        load_tables()
