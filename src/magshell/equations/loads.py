@@ -46,7 +46,8 @@ class LoadTerm:
 
     def couplings(self) -> Sequence[IntArray]:
         """See `Term`."""
-        return [np.column_stack([pairs.rows, pairs.columns]) for pairs in self._pairs if pairs is not None]
+        pairs = [np.column_stack([one.rows, one.columns]) for one in self._pairs if one is not None]
+        return [np.unique(np.sort(one, axis=1), axis=0) for one in pairs if len(one)]
 
     def forces(self, state: State, amplitudes: FloatArray) -> FloatArray:
         """Sum of the loads (nodes, 10), global axes: N on u, N m on directors and spins."""

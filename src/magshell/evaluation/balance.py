@@ -18,6 +18,7 @@ from magshell.evaluation.points import evaluate
 from magshell.magnetics import law
 from magshell.magnetics.law import OMEGA, M
 from magshell.model.course import Loading
+from magshell.shell.rotation import cross
 from magshell.shell.state import State
 
 
@@ -79,7 +80,7 @@ def magnetic_torque(discretisation: Discretisation, state: State, flux_density: 
     m = np.einsum("epkxy,epky->epkx", fields.F, remanence)
     n = np.einsum("epxy,epky->epkx", fields.R, remanence)
     _, forces, _ = law.evaluate(discretisation.model.coupling, m, n, flux_density)
-    torque = -(np.cross(m, forces[..., M : M + 3]) + forces[..., OMEGA : OMEGA + 3])
+    torque = -(cross(m, forces[..., M : M + 3]) + forces[..., OMEGA : OMEGA + 3])
     torque *= reference.geometry.volume[..., None]
     return torque.sum(axis=(0, 1, 2)), float(np.linalg.norm(torque, axis=-1).sum())
 
@@ -101,8 +102,8 @@ def balance(discretisation: Discretisation, state: State, loading: Loading, resi
     load = discretisation.loads.forces(state, loading.loads)
     position = discretisation.mesh.points + state.u
     director = discretisation.normals + state.w
-    moments = np.cross(position, reaction[:, :3]) + np.cross(director, reaction[:, 3:6]) + reaction[:, 7:]
-    load_moments = np.cross(position, load[:, :3]) + np.cross(director, load[:, 3:6]) + load[:, 7:]
+    moments = cross(position, reaction[:, :3]) + cross(director, reaction[:, 3:6]) + reaction[:, 7:]
+    load_moments = cross(position, load[:, :3]) + cross(director, load[:, 3:6]) + load[:, 7:]
     torque, torque_scale = magnetic_torque(discretisation, state, loading.flux_density)
     force_sum, load_sum = reaction[:, :3].sum(axis=0), load[:, :3].sum(axis=0)
     moment_sum, load_moment_sum = moments.sum(axis=0), load_moments.sum(axis=0)

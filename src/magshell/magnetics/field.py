@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -87,6 +88,11 @@ class UniformField:
 
     def turned(self, angle: float) -> FloatArray:
         """Flux density (3,) at multiplier 1, turned by an angle (rad) about the axis."""
+        along, across, normal = self._parts
+        return np.asarray(along + np.cos(angle) * across + np.sin(angle) * normal)
+
+    @cached_property
+    def _parts(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Of the vector: along the axis, across it, and their normal."""
         along = (self.vector @ self.axis) * self.axis
-        across = self.vector - along
-        return np.asarray(along + np.cos(angle) * across + np.sin(angle) * np.cross(self.axis, self.vector))
+        return along, self.vector - along, np.cross(self.axis, self.vector)

@@ -11,7 +11,7 @@ from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.magnetics import law as coupling_laws
 from magshell.materials import law as material_laws
 from magshell.shell.bubble import hold
-from magshell.shell.element import Layout
+from magshell.shell.element import layout_of
 from magshell.shell.elements import ElementType
 from magshell.shell.geometry import Interpolation, SectionGeometry, Sections, interpolation, section_geometry
 from magshell.shell.loops import Body
@@ -81,7 +81,7 @@ def reference_of(surface: Surface, make: Make) -> Reference:
     shape = interpolation(surface.points, surface.normals, element, surface.micro_rotation)
     _, weights = element.integration(surface.points)
     geometry = section_geometry(surface.points, surface.normals, shape, weights, make.sections)
-    layout = Layout(8, element.rest_nodes, element.stretch_nodes, shape.rotation.shape[-1], element.vectors)
+    layout = layout_of(8, element.rest_nodes, element.stretch_nodes, shape.rotation.shape[-1], element.vectors)
     levels = np.zeros(geometry.volume.shape, dtype=LEVEL)
     levels["z"], levels["volume"], levels["G"] = geometry.z, geometry.volume, geometry.G
     levels["remanence"] = make.remanence

@@ -30,7 +30,7 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.compiled import inline
-from magshell.shell.element import Layout, place
+from magshell.shell.element import Layout
 from magshell.shell.elements import ElementType
 from magshell.shell.shape_functions import serendipity
 from magshell.shell.triangle import collapsed
@@ -98,7 +98,7 @@ def hold_vector(
     for b in range(2):
         c[b] = 0.0
         for i in range(3):
-            s, at = held.A[e, b, i], place(i, 0, layout)
+            s, at = held.A[e, b, i], i * layout.u
             for n in range(layout.u):
                 s += held.du[b, n] * v[at + n]
             a[b, i] = s
@@ -106,9 +106,9 @@ def hold_vector(
     for b in range(2):
         T[b] = held.k[number, e, b, 0] * c[0] + held.k[number, e, b, 1] * c[1]
         energy += 0.5 * T[b] * c[b]
-    last = place(10, 0, layout) + layout.modes - 1 - number
+    last = layout.nodal + layout.modes - 1 - number
     for i in range(3):
-        row, at = last + i * layout.modes, place(i, 0, layout)
+        row, at = last + i * layout.modes, i * layout.u
         energy += 0.5 * held.s[number, e] * alpha[i] ** 2
         r[row, 0] += T[0] * a[0, i] + T[1] * a[1, i] + held.s[number, e] * alpha[i]
         K[row, row] += held.s[number, e]
@@ -118,7 +118,7 @@ def hold_vector(
             K[row, at + n] += d
             K[at + n, row] += d
         for j in range(3):
-            at_j, h = place(j, 0, layout), 0.0
+            at_j, h = j * layout.u, 0.0
             for b in range(2):
                 ka = held.k[number, e, b, 0] * a[0, i] + held.k[number, e, b, 1] * a[1, i]
                 h += ka * a[b, j]

@@ -28,31 +28,34 @@ from magshell.shell.state import State
 
 
 class Layout(NamedTuple):
-    """How many of an element's nodes carry each field, and its number of enhanced modes."""
+    """Places of an element's values.
+
+    Attributes
+    ----------
+    u, w, phi, q : int
+        How many of the element's nodes carry each field.
+    modes : int
+        Enhanced modes.
+    at_w, at_phi, at_q, nodal : int
+        First place of w, of φ, of q or ϑ, and with ϑ of α.
+    """
 
     u: int
     w: int
     phi: int
     q: int
     modes: int
+    at_w: int
+    at_phi: int
+    at_q: int
+    nodal: int
 
 
-@inline
-def place(component: int, node: int, layout: Layout) -> int:
-    """Place of a node's component (column of the nodal arrays) among the element's values; with ten: of α."""
-    if component < 3:
-        return component * layout.u + node
-    if component < 6:
-        return 3 * layout.u + (component - 3) * layout.w + node
-    if component == 6:
-        return 3 * layout.u + 3 * layout.w + node
-    return 3 * layout.u + 3 * layout.w + layout.phi + (component - 7) * layout.q + node
-
-
-@inline
-def carriers(component: int, layout: Layout) -> int:
-    """Number of nodes that carry a component."""
-    return layout.u if component < 3 else layout.w if component < 6 else layout.phi if component == 6 else layout.q
+def layout_of(u: int, w: int, phi: int, q: int, modes: int) -> Layout:
+    """Places of so many nodes' values."""
+    at_phi = 3 * u + 3 * w
+    at_q = at_phi + phi
+    return Layout(u, w, phi, q, modes, 3 * u, at_phi, at_q, at_q + 3 * q)
 
 
 @inline
@@ -67,15 +70,15 @@ def gather(
     u, w, phi, q = state.u, state.w, state.phi, state.q
     first = q[nodes[0]]
     for i in range(3):
-        at_u, at_w = place(i, 0, layout), place(3 + i, 0, layout)
+        at_u, at_w = i * layout.u, layout.at_w + i * layout.w
         for n in range(layout.u):
             v[at_u + n] = u[nodes[n], i]
         for n in range(layout.w):
             v[at_w + n] = w[nodes[n], i]
-    at = place(6, 0, layout)
+    at = layout.at_phi
     for n in range(layout.phi):
         v[at + n] = phi[nodes[n]]
-    at = place(7, 0, layout)
+    at = layout.at_q
     for n in range(layout.q):
         node = nodes[n]
         dot = first[0] * q[node, 0] + first[1] * q[node, 1] + first[2] * q[node, 2] + first[3] * q[node, 3]
@@ -92,8 +95,8 @@ def gather(
 def point_values(point: Record, enhancement: FloatArray, layout: Layout, v: FloatArray, x: FloatArray) -> None:
     """x = G v at a point; without micro-rotation q̂ is the identity."""
     for i in range(3):
-        at_u, at_w = place(i, 0, layout), place(3 + i, 0, layout)
-        at_α = place(7, 0, layout) + 4 * layout.q + i * layout.modes
+        at_u, at_w = i * layout.u, layout.at_w + i * layout.w
+        at_α = layout.at_q + 4 * layout.q + i * layout.modes
         s1, s2 = 0.0, 0.0
         for n in range(layout.u):
             s1 += point.u[0, n] * v[at_u + n]
@@ -110,13 +113,13 @@ def point_values(point: Record, enhancement: FloatArray, layout: Layout, v: Floa
             s1 += point.director[1, n] * v[at_w + n]
             s2 += point.director[2, n] * v[at_w + n]
         x[W + i], x[W1 + i], x[W1 + 3 + i] = s0, s1, s2
-    at = place(6, 0, layout)
+    at = layout.at_phi
     s0 = 0.0
     for n in range(layout.phi):
         s0 += point.phi[n] * v[at + n]
     x[PHI] = s0
     for c in range(4):
-        at = place(7 + c, 0, layout)
+        at = layout.at_q + c * layout.q
         s0, s1, s2 = 0.0, 0.0, 0.0
         for n in range(layout.q):
             s0 += point.rotation[0, n] * v[at + n]
@@ -130,7 +133,7 @@ def point_values(point: Record, enhancement: FloatArray, layout: Layout, v: Floa
 @inline
 def spin_derivatives(v: FloatArray, layout: Layout, T: FloatArray) -> None:
     """Fill T (nodes, 4, 3): ∂(exp(ϑ/2) q)/∂ϑ at ϑ = 0 of each node's quaternion in v."""
-    at, rest = place(7, 0, layout), layout.q
+    at, rest = layout.at_q, layout.q
     for n in range(rest):
         q0, q1, q2, q3 = v[at + n], v[at + rest + n], v[at + 2 * rest + n], v[at + 3 * rest + n]
         T[n, 0, 0], T[n, 0, 1], T[n, 0, 2] = -0.5 * q1, -0.5 * q2, -0.5 * q3
@@ -153,30 +156,30 @@ def contract(
     width = out.shape[1]
     for i in range(3):
         h1, h2, h3 = H[U1 + i], H[U1 + 3 + i], H[ENHANCED + i]
-        at = place(i, 0, layout)
+        at = i * layout.u
         for n in range(layout.u):
             row, a1, a2 = out[at + n], point.u[0, n], point.u[1, n]
             for j in range(width):
                 row[j] += a1 * h1[j] + a2 * h2[j]
-        at = place(10, 0, layout) + i * layout.modes
+        at = layout.nodal + i * layout.modes
         for m in range(layout.modes):
             row = out[at + m]
             a1, a2, a = enhancement[0, m], enhancement[1, m], enhancement[2, m]
             for j in range(width):
                 row[j] += a1 * h1[j] + a2 * h2[j] + a * h3[j]
         h, h1, h2 = H[W + i], H[W1 + i], H[W1 + 3 + i]
-        at = place(3 + i, 0, layout)
+        at = layout.at_w + i * layout.w
         for n in range(layout.w):
             row = out[at + n]
             a, a1, a2 = point.director[0, n], point.director[1, n], point.director[2, n]
             for j in range(width):
                 row[j] += a * h[j] + a1 * h1[j] + a2 * h2[j]
-    h, at = H[PHI], place(6, 0, layout)
+    h, at = H[PHI], layout.at_phi
     for n in range(layout.phi):
         row, a = out[at + n], point.phi[n]
         for j in range(width):
             row[j] += a * h[j]
-    at = place(7, 0, layout)
+    at = layout.at_q
     for n in range(layout.q):
         a, a1, a2 = point.rotation[0, n], point.rotation[1, n], point.rotation[2, n]
         for c in range(4):
@@ -194,7 +197,7 @@ def contract(
 def add_radial_force(point: Record, layout: Layout, g: FloatArray, v: FloatArray, radial: FloatArray) -> None:
     """radial (nodes,) += q · r_q of each node, from the gradient that the geometric part is made with."""
     for c in range(4):
-        at = place(7 + c, 0, layout)
+        at = layout.at_q + c * layout.q
         for n in range(layout.q):
             r = point.rotation[0, n] * g[Q + c, MIXED]
             r += point.rotation[1, n] * g[Q1 + c, MIXED] + point.rotation[2, n] * g[Q1 + 4 + c, MIXED]

@@ -17,13 +17,11 @@ from magshell.shell.bubble import Hold, hold_vector
 from magshell.shell.element import (
     Layout,
     add_radial_force,
-    carriers,
     condense,
     contract,
     copy,
     gather,
     padded,
-    place,
     point_values,
     spin_derivatives,
     transpose,
@@ -33,7 +31,6 @@ from magshell.shell.point import INTERNAL, MAGNETIC, PADDED, SIZE, workspace
 from magshell.shell.rotation import LAST, NEXT
 from magshell.shell.section import Laws, Request, predicted_stress, section
 from magshell.shell.state import State
-from magshell.shell.unknowns import COMPONENTS
 
 ELIMINATION_STEPS = 30
 
@@ -110,8 +107,8 @@ def _add_spin_transport(r: FloatArray, layout: Layout, n: int, Kt: FloatArray) -
     rotations unless exactly one is.
     """
     for i in range(3):
-        j, k = place(7 + NEXT[i], n, layout), place(7 + LAST[i], n, layout)
-        half = 0.5 * r[place(7 + i, n, layout)]
+        j, k = layout.at_q + NEXT[i] * layout.q + n, layout.at_q + LAST[i] * layout.q + n
+        half = 0.5 * r[layout.at_q + i * layout.q + n]
         Kt[k, j] += half
         Kt[j, k] -= half
 
@@ -125,7 +122,7 @@ def fill(
     The spins of nodes in `transported` (nodes,) are those of the new state in the reaction, too.
     """
     layout, rest, modes = body.layout, body.layout.q, body.layout.modes
-    nodal = place(10, 0, layout)
+    nodal = layout.nodal
     size, tangent = nodal + 3 * modes, request.tangent
     full = size + rest
     v, T, radial = np.zeros(full), np.zeros((rest, 4, 3)), np.zeros(rest)
@@ -141,7 +138,9 @@ def fill(
         nodes, Kt, r = body.elements[e], out.K[e - first], out.r[e - first]
         gather(nodes, state, state.alpha[e], layout, v)
         spin_derivatives(v, layout, T)
-        forces[:, :], Kt[:, :], radial[:] = 0.0, 0.0, 0.0
+        forces[:, :], radial[:] = 0.0, 0.0
+        if tangent:
+            Kt[:, :] = 0.0
         out.energy[e, :] = 0.0
         for p in range(body.points.shape[1]):
             point, levels, enhancement = body.points[e, p], body.levels[e, p], body.enhancement[e, p]
@@ -179,15 +178,15 @@ def fill(
             r_sum[l] = forces[l, INTERNAL] + forces[l, MAGNETIC]
             r[l, 0] = r_sum[l]
             if l < nodal:
-                kind = 0 if l < 3 * layout.u else 1 if l < place(6, 0, layout) else 2 if l < place(7, 0, layout) else 3
+                kind = 0 if l < layout.at_w else 1 if l < layout.at_phi else 2 if l < layout.at_q else 3
                 out.scale[kind, INTERNAL] += forces[l, INTERNAL] ** 2
                 out.scale[kind, MAGNETIC] += forces[l, MAGNETIC] ** 2
             else:
                 out.enhancement_residual[0] += r_sum[l] ** 2
         if tangent:
             for n in range(rest):
-                for c in range(7, 10):
-                    at = place(c, n, layout)
+                for i in range(3):
+                    at = layout.at_q + i * layout.q + n
                     Kt[at, at] -= 0.25 * radial[n]
                 if transported[nodes[n]]:
                     _add_spin_transport(r_sum, layout, n, Kt)
@@ -201,10 +200,15 @@ def fill(
 @inline
 def _gather_increment(nodes: IntArray, increment: FloatArray, layout: Layout, dv: FloatArray) -> None:
     """Fill dv with an element's nodal increments, spins at the end."""
-    for component in range(COMPONENTS):
-        at = place(component, 0, layout)
-        for n in range(carriers(component, layout)):
-            dv[at + n] = increment[nodes[n], component]
+    for i in range(3):
+        for n in range(layout.u):
+            dv[i * layout.u + n] = increment[nodes[n], i]
+        for n in range(layout.w):
+            dv[layout.at_w + i * layout.w + n] = increment[nodes[n], 3 + i]
+        for n in range(layout.q):
+            dv[layout.at_q + i * layout.q + n] = increment[nodes[n], 7 + i]
+    for n in range(layout.phi):
+        dv[layout.at_phi + n] = increment[nodes[n], 6]
 
 
 @Kernel
@@ -218,7 +222,7 @@ def recover_enhancement(
 ) -> None:
     """Fill Δα (elements, modes, 3) = -offset - gain Δv."""
     modes = layout.modes
-    dv = np.zeros(place(10, 0, layout))
+    dv = np.zeros(layout.nodal)
     for e in range(len(elements)):
         _gather_increment(elements[e], increment, layout, dv)
         for m in range(modes):
@@ -234,10 +238,10 @@ def recover_enhancement(
 def predict_stresses(body: Body, state: State, increment: FloatArray, d_alpha: FloatArray, stresses: Stresses) -> None:
     """Fill the stresses predicted linearly from `state` for a nodal increment (nodes, 10) and Δα."""
     layout = body.layout
-    modes, rest, at = layout.modes, layout.q, place(7, 0, layout)
-    full = place(10, 0, layout) + rest + 3 * modes
-    v, dv, spins = np.zeros(full), np.zeros(full), np.zeros(place(10, 0, layout))
-    dx, T, records = np.zeros(SIZE), np.zeros((rest, 4, 3)), workspace()
+    modes, rest, at = layout.modes, layout.q, layout.at_q
+    full = layout.nodal + rest + 3 * modes
+    v, dv, spins = np.zeros(full), np.zeros(full), np.zeros(layout.nodal)
+    T, records = np.zeros((rest, 4, 3)), workspace()
     w = records[0]
     for e in range(len(body.elements)):
         nodes = body.elements[e]
@@ -258,8 +262,8 @@ def predict_stresses(body: Body, state: State, increment: FloatArray, d_alpha: F
         for p in range(body.points.shape[1]):
             point, levels, enhancement = body.points[e, p], body.levels[e, p], body.enhancement[e, p]
             point_values(point, enhancement, layout, v, w.x)
-            point_values(point, enhancement, layout, dv, dx)
-            predicted_stress(w, dx, point, levels, body.laws, stresses.S[e, p], stresses.kappa[e, p])
+            point_values(point, enhancement, layout, dv, w.dx)
+            predicted_stress(w, point, levels, body.laws, stresses.S[e, p], stresses.kappa[e, p])
 
 
 def are_compiled(material: type, coupling: type) -> bool:

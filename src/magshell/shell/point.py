@@ -46,10 +46,11 @@ LEVEL = np.dtype(
         ("coupling", np.int64),
     ]
 )
-#: Scratch arrays of one thread.
+#: Scratch arrays of one thread. Tensors of fourth order are (81,): index [p, j, q, l] at 27 p + 9 j + 3 q + l.
 WORKSPACE = np.dtype(
     [
         ("x", float, (SIZE,)),
+        ("dx", float, (SIZE,)),
         ("g", float, (SIZE, 3)),
         ("H", float, (SIZE, PADDED)),
         ("R", float, (3, 3)),
@@ -59,8 +60,8 @@ WORKSPACE = np.dtype(
         ("P", float, (3, 3)),
         ("U_inverse_transpose", float, (3, 3)),
         ("S", float, (3, 3)),
-        ("C", float, (3, 3, 3, 3)),
-        ("C_half", float, (3, 3, 3, 3)),
+        ("C", float, (81,)),
+        ("C_half", float, (81,)),
         ("dU", float, (3, 3)),
         ("dP", float, (3, 3)),
         ("t", float, (3, 3)),
@@ -74,16 +75,15 @@ WORKSPACE = np.dtype(
         ("forces", float, (WORK,)),
         ("work_tangent", float, (WORK, WORK)),
         ("memory", float, (1,)),
-        ("K_g", float, (3, 3, 3, 3)),
+        ("K_g", float, (81,)),
         ("K_gω", float, (3, 3, 3)),
         ("H_gω", float, (Q, 3)),
         ("H_ωg", float, (3, Q)),
         ("H_ωω", float, (3, 3)),
         ("L", float, (3, 4)),
-        ("M", float, (2, 3, 4)),
-        ("M_c", float, (2, 3, 4)),
-        ("m_L", float, (2, 4)),
-        ("m_M", float, (4,)),
+        ("M", float, (3, 4)),
+        ("D", float, (2, 3, 12)),
+        ("D_m", float, (12,)),
         ("kappa", float, (2, 3)),
         ("stress", float, (2, 3)),
         ("couples", float, (3, 3)),

@@ -28,12 +28,18 @@ def identity(count: int) -> FloatArray:
     return q
 
 
+def cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Vector products (..., 3). (`np.cross` takes ten times as long for a few vectors.)"""
+    a1, a2, a3, b1, b2, b3 = a[..., 0], a[..., 1], a[..., 2], b[..., 0], b[..., 1], b[..., 2]
+    return np.stack([a2 * b3 - a3 * b2, a3 * b1 - a1 * b3, a1 * b2 - a2 * b1], axis=-1)
+
+
 def product(p: FloatArray, q: FloatArray) -> FloatArray:
     """Quaternion product p q, arrays (..., 4): first q, then p."""
     p0, q0 = p[..., :1], q[..., :1]
     pv, qv = p[..., 1:], q[..., 1:]
     scalar = p0 * q0 - np.sum(pv * qv, axis=-1, keepdims=True)
-    return np.concatenate([scalar, p0 * qv + q0 * pv + np.cross(pv, qv)], axis=-1)
+    return np.concatenate([scalar, p0 * qv + q0 * pv + cross(pv, qv)], axis=-1)
 
 
 def conjugate(q: FloatArray) -> FloatArray:

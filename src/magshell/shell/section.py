@@ -71,27 +71,25 @@ def _level_hessian(w: Record) -> None:
     g, t, K, K_gω, H_ωω, couple = w.base, w.t_mixed, w.K_g, w.K_gω, w.H_ωω, w.couples[MIXED]
     for a in range(3):
         for i in range(3):
-            s0, s1, s2 = 0.0, 0.0, 0.0
-            for b in range(3):
-                c0, c1, c2 = K[a, i, b, 0], K[a, i, b, 1], K[a, i, b, 2]
-                s0 += c1 * g[b, 2] - c2 * g[b, 1]
-                s1 += c2 * g[b, 0] - c0 * g[b, 2]
-                s2 += c0 * g[b, 1] - c1 * g[b, 0]
-            K_gω[a, i, 0], K_gω[a, i, 1], K_gω[a, i, 2] = s0, s1, s2
+            row = 27 * i + 9 * a
+            for l in range(3):
+                s = 0.0
+                for b in range(3):
+                    s += K[row + 3 * NEXT[l] + b] * g[b, LAST[l]] - K[row + 3 * LAST[l] + b] * g[b, NEXT[l]]
+                K_gω[a, i, l] = s
     for a in range(3):
-        dot = g[a, 0] * t[a, 0] + g[a, 1] * t[a, 1] + g[a, 2] * t[a, 2]
+        dot = 0.0
         for i in range(3):
             j, k = NEXT[i], LAST[i]
+            dot += g[a, i] * t[a, i]
             for l in range(3):
                 H_ωω[i, l] += K_gω[a, j, l] * g[a, k] - K_gω[a, k, l] * g[a, j]
                 H_ωω[i, l] += 0.5 * (g[a, i] * t[a, l] + t[a, i] * g[a, l])
-            H_ωω[i, i] -= dot
             couple[i] -= g[a, j] * t[a, k] - g[a, k] * t[a, j]
-    for a in range(3):
         for i in range(3):
-            j, k = NEXT[i], LAST[i]
-            K_gω[a, k, j] -= t[a, i]
-            K_gω[a, j, k] += t[a, i]
+            H_ωω[i, i] -= dot
+            K_gω[a, LAST[i], NEXT[i]] -= t[a, i]
+            K_gω[a, NEXT[i], LAST[i]] += t[a, i]
 
 
 @inline
@@ -105,31 +103,26 @@ def _scatter_level(w: Record, z: float, volume: float) -> None:
     b, d2z, H, K_g, K_gω, H_gω, H_ωg, T = w.b, w.d2z, w.H, w.K_g, w.K_gω, w.H_gω, w.H_ωg, w.work_tangent
     for a in range(3):
         a1, ca1, a2, ca2 = (12, s, 15, 1.0) if a == 2 else (3 * a, 1.0, 6 + 3 * a, z)
-        for c in range(3):
-            c1, cc1, c2, cc2 = (12, s, 15, 1.0) if c == 2 else (3 * c, 1.0, 6 + 3 * c, z)
-            k11, k12, k21, k22 = ca1 * cc1, ca1 * cc2, ca2 * cc1, ca2 * cc2
-            b_ac = volume * b[a] * b[c]
-            for i in range(3):
-                for j in range(3):
-                    h = K_g[a, i, c, j] + b_ac * T[M + i, M + j]
-                    K_g[a, i, c, j] = h
-                    H[a1 + i, c1 + j] += k11 * h
-                    H[a1 + i, c2 + j] += k12 * h
-                    H[a2 + i, c1 + j] += k21 * h
-                    H[a2 + i, c2 + j] += k22 * h
-    for a in range(3):
-        a1, ca1, a2, ca2 = (12, s, 15, 1.0) if a == 2 else (3 * a, 1.0, 6 + 3 * a, z)
-        for j in range(3):
-            row = d2z[0] * K_g[2, 0, a, j] + d2z[1] * K_g[2, 1, a, j] + d2z[2] * K_g[2, 2, a, j]
-            column = d2z[0] * K_g[a, j, 2, 0] + d2z[1] * K_g[a, j, 2, 1] + d2z[2] * K_g[a, j, 2, 2]
-            if a == 2:
-                H[PHI, PHI] += d2z[j] * column
-            H[PHI, a1 + j] += ca1 * row
-            H[PHI, a2 + j] += ca2 * row
-            H[a1 + j, PHI] += ca1 * column
-            H[a2 + j, PHI] += ca2 * column
         b_a = volume * b[a]
         for i in range(3):
+            column = 0.0
+            for c in range(3):
+                c1, cc1, c2, cc2 = (12, s, 15, 1.0) if c == 2 else (3 * c, 1.0, 6 + 3 * c, z)
+                for j in range(3):
+                    h = K_g[27 * i + 9 * a + 3 * j + c] + b_a * b[c] * T[M + i, M + j]
+                    H[a1 + i, c1 + j] += ca1 * cc1 * h
+                    H[a1 + i, c2 + j] += ca1 * cc2 * h
+                    H[a2 + i, c1 + j] += ca2 * cc1 * h
+                    H[a2 + i, c2 + j] += ca2 * cc2 * h
+                    if c == 2:
+                        column += h * d2z[j]
+                    if a == 2:
+                        H[PHI, c1 + j] += d2z[i] * cc1 * h
+                        H[PHI, c2 + j] += d2z[i] * cc2 * h
+            H[a1 + i, PHI] += ca1 * column
+            H[a2 + i, PHI] += ca2 * column
+            if a == 2:
+                H[PHI, PHI] += d2z[i] * column
             for j in range(3):
                 h_gω = K_gω[a, i, j] + b_a * T[M + i, OMEGA + j]
                 h_ωg = K_gω[a, i, j] + b_a * T[OMEGA + j, M + i]
@@ -182,7 +175,7 @@ def _mix(w: Record, S_mixed: FloatArray) -> None:
         for l in range(3):
             difference = 0.5 * (S_mixed[j, l] - S[j, l] + S_mixed[l, j] - S[l, j])
             for p in range(3):
-                C[p, j, p, l] += difference
+                C[30 * p + 9 * j + l] += difference
     for p in range(3):
         for l in range(3):
             P[p, l] = U[p, 0] * S_mixed[0, l] + U[p, 1] * S_mixed[1, l] + U[p, 2] * S_mixed[2, l]
@@ -261,7 +254,7 @@ def section(
             if request.mixed:
                 _mix(w, S_mixed[k])
             stress_vectors(w.R, w.P, G, volume, w.t_mixed)
-            moduli_on_legs(w.R, G, volume, w.C, w.C_half, w.K_g)
+            moduli_on_legs(w, G, volume)
             _level_hessian(w)
             for i in range(3):
                 w.t3[i] = w.t_mixed[2, i] + volume * b[2] * forces[M + i]
@@ -304,15 +297,14 @@ def _add_stress_vector(w: Record, column: int, i: int, z: float, t1: float, t2: 
 @inline
 def predicted_stress(
     w: Record,
-    dx: FloatArray,
     point: Record,
     levels: AnyArray,
     laws: Laws,
     S_mixed: FloatArray,
     kappa_mixed: FloatArray,
 ) -> None:
-    """Fill S' = U⁻¹ (P + C : ΔU - ΔU S) (levels, 3, 3), κ' = κ + Δκ (2, 3), linear in the increment dx (31,)."""
-    x, g, t, S, C, P = w.x, w.base, w.t, w.S, w.C, w.P
+    """Fill S' = U⁻¹ (P + C : ΔU - ΔU S) (levels, 3, 3), κ' = κ + Δκ (2, 3), linear in the increment w.dx (31,)."""
+    x, dx, g, t, S, C, P = w.x, w.dx, w.base, w.t, w.S, w.C, w.P
     q, dq, ω, dU, dP = x[Q : Q + 4], dx[Q : Q + 4], w.n, w.dU, w.dP
     n2 = rotation_matrix(q, w.R)
     spin_map(q, n2, w.V)
@@ -329,9 +321,8 @@ def predicted_stress(
             t[1, i] = dx[U1 + 3 + i] + z * dx[W1 + 3 + i]
             t[2, i] = (1.0 + 2.0 * z * x[PHI]) * dx[W + i] + 2.0 * z * dx[PHI] * d + dx[ENHANCED + i]
         for a in range(3):
-            t[a, 0] -= ω[1] * g[a, 2] - ω[2] * g[a, 1]
-            t[a, 1] -= ω[2] * g[a, 0] - ω[0] * g[a, 2]
-            t[a, 2] -= ω[0] * g[a, 1] - ω[1] * g[a, 0]
+            for i in range(3):
+                t[a, i] -= ω[NEXT[i]] * g[a, LAST[i]] - ω[LAST[i]] * g[a, NEXT[i]]
         stretch(w.R, t, G, dU)
         _second_stress(w, S)
         for i in range(3):
@@ -339,7 +330,7 @@ def predicted_stress(
                 value = -dU[i, 0] * S[0, j] - dU[i, 1] * S[1, j] - dU[i, 2] * S[2, j]
                 for l in range(3):
                     for r in range(3):
-                        value += C[i, j, l, r] * dU[l, r]
+                        value += C[27 * i + 9 * j + 3 * l + r] * dU[l, r]
                 dP[i, j] = value
         for i in range(3):
             for j in range(3):
@@ -347,9 +338,9 @@ def predicted_stress(
         _second_stress(w, S_mixed[k])
     for a in range(2):
         at = Q1 + 4 * a
-        wryness_maps(q, x[at : at + 4], n2, w.L, w.M[a], w.kappa[a])
+        wryness_maps(q, x[at : at + 4], n2, w.L, w.M, w.kappa[a])
         for i in range(3):
             value = w.kappa[a, i]
             for r in range(4):
-                value += w.L[i, r] * dx[at + r] + w.M[a, i, r] * dq[r]
+                value += w.L[i, r] * dx[at + r] + w.M[i, r] * dq[r]
             kappa_mixed[a, i] = value

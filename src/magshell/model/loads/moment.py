@@ -149,7 +149,7 @@ class _DirectorMoments(_Moments):
     def forces(self, state: State) -> FloatArray:
         """M × d / |d|² on w."""
         d = self.normals + state.w
-        return nodal("w", np.cross(self.moments, d) / np.sum(d * d, axis=1, keepdims=True))
+        return nodal("w", rotation.cross(self.moments, d) / np.sum(d * d, axis=1, keepdims=True))
 
     def stiffness(self, state: State) -> FloatArray:
         """-[M]× (I - 2 n ⊗ n) / |d|²."""

@@ -34,6 +34,7 @@ from magshell.model.loads.distribution import nodal_areas
 from magshell.model.loads.functions import loaded
 from magshell.model.loads.load import Applied, Arrows, Load, Pairs, Size
 from magshell.model.shell import Shell
+from magshell.shell import rotation
 from magshell.shell.shape_functions import gauss_legendre
 from magshell.shell.state import State
 from magshell.units import FORCE, STRESS, Dimension, show
@@ -130,7 +131,7 @@ class _Pressing:
         """F_I on u."""
         a_1, a_2 = self._base(state)
         on_u = np.zeros_like(self.points)
-        np.add.at(on_u, self.elements, np.swapaxes(self.weighted, 1, 2) @ np.cross(a_1, a_2))
+        np.add.at(on_u, self.elements, np.swapaxes(self.weighted, 1, 2) @ rotation.cross(a_1, a_2))
         return nodal("u", on_u)
 
     def stiffness(self, state: State) -> FloatArray:
