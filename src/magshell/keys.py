@@ -7,7 +7,7 @@ parameters of the class are the keys, with its defaults.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import Any, NamedTuple
 
 
@@ -40,3 +40,12 @@ def defaults(make: Callable[..., Any]) -> Mapping[str, Any]:
     """The parameters of a class or function that have a default, with it."""
     parameters = inspect.signature(make).parameters.values()
     return {one.name: one.default for one in parameters if one.default is not one.empty}
+
+
+def fits(make: Callable[..., Any], keys: Collection[str]) -> bool:
+    """Whether a class or function can be called with values for these keys and nothing else."""
+    try:
+        inspect.signature(make).bind(**dict.fromkeys(keys))
+    except TypeError:
+        return False
+    return True

@@ -208,3 +208,14 @@ def test_a_key_of_an_unknown_kind_is_refused(registries: None) -> None:
     LOADS["slip"] = Slip
     with pytest.raises(TypeError, match=r"'ForceVektor' of total is no kind of value\. Did you mean 'ForceVector'"):
         load_tables()
+
+
+@pytest.mark.parametrize("keys", [("group",), ("group", "total", "tottal")])
+def test_keys_that_are_not_the_parameters_are_refused(registries: None, keys: tuple[str, ...]) -> None:
+    class Slip(LOADS["force"]):  # type: ignore[misc]
+        pass
+
+    Slip.keys = {key: Key("Name", "A slip.") for key in keys}
+    LOADS["slip"] = Slip
+    with pytest.raises(TypeError, match=r"slip: its keys \(group.*\) are not the parameters of .*Slip"):
+        load_tables()

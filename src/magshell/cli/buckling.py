@@ -8,7 +8,6 @@ import pathlib
 from magshell.cli.console import complain, console, say, say_doubts, say_picture
 from magshell.cli.folders import made
 from magshell.cli.status import NOT_SOLVED, SOLVED
-from magshell.solver.path import SolveError
 from magshell.units import ANGLE, FLUX_DENSITY, show
 
 ABOUT = "estimate the loads at which a problem buckles, and the modes"
@@ -37,6 +36,7 @@ def run(given: argparse.Namespace) -> int:
     from magshell.problem.report import describe
     from magshell.progress import ProgressDisplay
     from magshell.solver.buckling import buckling
+    from magshell.solver.path import SolveError
 
     problem = load(given.problem)
     out = console()

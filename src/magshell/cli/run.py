@@ -18,7 +18,6 @@ from magshell.cli.memory import say_memory
 from magshell.cli.mesh import say_origin
 from magshell.cli.status import INTERRUPTED, NOT_SOLVED, SOLVED
 from magshell.errors import InputError, lacks_memory
-from magshell.solver.path import SolveError
 from magshell.units import LENGTH, show
 
 if TYPE_CHECKING:
@@ -140,6 +139,7 @@ def _follow(
     from magshell.output.summary import write_summary
     from magshell.progress import ProgressDisplay
     from magshell.results import writers
+    from magshell.solver.path import SolveError
 
     progress = ProgressDisplay(out)
     try:

@@ -8,7 +8,7 @@ from typing import Any, Literal, Optional, get_origin
 from pydantic import create_model
 
 from magshell.errors import suggest
-from magshell.keys import Key, defaults
+from magshell.keys import Key, defaults, fits
 from magshell.problem import fields
 from magshell.problem.schema.remanence import Folds
 from magshell.problem.schema.table import Table
@@ -34,9 +34,11 @@ def table_of(
     Raises
     ------
     TypeError
-        A description names no kind of value.
+        A description names no kind of value; keys and parameters differ.
     """
     known = defaults(make)
+    if not fits(make, keys):
+        raise TypeError(f"{name}: its keys ({', '.join(keys)}) are not the parameters of {make}")
     columns: dict[str, Any] = {choice: (Literal[name], ...)}
     for key, description in keys.items():
         if description.kind not in KINDS:
