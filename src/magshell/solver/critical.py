@@ -22,6 +22,7 @@ from magshell.equations.assembly import Assembly
 from magshell.linalg import Factorisation, SingularMatrix
 from magshell.shell.state import State
 from magshell.solver.constraints import Metric, Sphere
+from magshell.solver.continuity import length_along
 from magshell.solver.newton import Solution, StepFailure, System, Trial, factorise, newton
 from magshell.solver.track import Point, point_at, trial_at
 
@@ -135,6 +136,8 @@ class _Search:
         solution = Solution(own, system.assemble(own), [0.0], None, None)
         self.factors = factorise(system, solution.assembly)
         point = point_at(system, self.metric, solution, self.factors, before.arc_length + distance, along)
+        if distance > 0.0:
+            length_along(self.metric, before, point)
         self.known[distance] = point
         return point
 
