@@ -18,7 +18,7 @@ from magshell.solver.goals import Goal, ProbeGoal, goals_of
 from magshell.solver.newton import Solution, StepFailure, System, Trial, newton
 from magshell.solver.path import Path, Step
 from magshell.solver.starts import Start, start_of
-from magshell.solver.step_control import MOST_STEPS, StepControl, StepRules, stagnates
+from magshell.solver.step_control import StepControl, StepRules, stagnant
 from magshell.solver.track import Direction, Point, Slope, close_factors, point_at
 from magshell.solver.waypoint import Waypoint
 
@@ -146,8 +146,8 @@ class Follower:
     def _stray(self, goal: Goal) -> None:
         """Raise StepFailure if the last steps came no nearer to the goal than the ones before."""
         values = [goal.value(step) for step in self.path.steps[-self.taken :]]
-        if stagnates(values, goal.wanted, self.settings.largest_step):
-            raise StepFailure(self._strayed(goal, values[-MOST_STEPS:]))
+        if last := stagnant(values, goal.wanted, self.settings.largest_step):
+            raise StepFailure(self._strayed(goal, last))
 
     def local_metric(self) -> Metric:
         """In which the load factor weighs no less than the displacements of the stage so far."""
@@ -264,25 +264,35 @@ class Follower:
 
     def _give_up(self, load_factor: float) -> str:
         """Where the path ends, what fails there, and why."""
-        path, cuts = self.path, self.path.cuts
-        turns = [point for point in path.critical_points if point.kind == LIMIT_POINT and point.stage == self.stage]
-        turned = (
-            f" The load factor turned at {turns[-1].load_factor:.6g} (critical point {turns[-1].number})."
-            if turns
-            else ""
-        )
+        cuts = self.path.cuts
         return (
             f"{self._position()}: after {cuts} cut{'s' * (cuts != 1)} the step to {load_factor:.6g} still fails: "
-            f"{self.failure}.{turned} {self._diagnosis(self.failure.inverted)}"
+            f"{self.failure}.{self._turned()} {self._diagnosis(self.failure.inverted)}"
         )
 
     def _strayed(self, goal: Goal, values: Sequence[float]) -> str:
         """The same of a path that goes on without coming nearer to a goal."""
         turns = int(np.count_nonzero(np.diff(np.sign(np.diff(values)))))
         return (
-            f"{self._position()}: the last {MOST_STEPS} steps came no nearer to the next stop, {goal.named}; "
-            f"it went to and fro between {min(values):.4g} and {max(values):.4g} and turned {turns} times. "
-            f"{self._diagnosis(None)}"
+            f"{self._position()}: the last {len(values)} steps came no nearer to the next stop, {goal.named}; "
+            f"it went to and fro between {min(values):.4g} and {max(values):.4g} and turned {turns} times."
+            f"{self._turned()} {self._diagnosis(None)}"
+        )
+
+    def _turned(self) -> str:
+        """The first limit point of the stage, beyond which no state is reached by the load alone."""
+        turns = [
+            point for point in self.path.critical_points if point.kind == LIMIT_POINT and point.stage == self.stage
+        ]
+        if not turns:
+            return ""
+        after = [step for step in self.path.steps if step.stage == self.stage and step.arc_length > turns[0].arc_length]
+        unstable = sum(bool(step.negative_pivots) for step in after)
+        again = f" and again {len(turns) - 1} times" if len(turns) > 2 else " and once again" if len(turns) == 2 else ""
+        return (
+            f" The load factor turned at {turns[0].load_factor:.6g} (critical point {turns[0].number}){again}; "
+            f"{unstable} of the {len(after)} states since are unstable. Under a load that grows further the body jumps "
+            "there, and where to is a matter of dynamics: a stop below that load factor is reached."
         )
 
     def _position(self) -> str:

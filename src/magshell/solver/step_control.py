@@ -65,8 +65,8 @@ class StepControl(NamedTuple):
         return not self.size >= self.rules.smallest
 
 
-def stagnates(values: Sequence[float], wanted: float, largest_step: float) -> bool:
-    """Whether the last steps came no nearer to a wanted value than the ones before.
+def stagnant(values: Sequence[float], wanted: float, largest_step: float) -> Sequence[float]:
+    """The last of some values, if they came no nearer to a wanted one than those before; else none.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def stagnates(values: Sequence[float], wanted: float, largest_step: float) -> bo
         Largest change of the value in a step that is allowed.
     """
     if len(values) <= MOST_STEPS:
-        return False
+        return []
     left = np.minimum.accumulate(np.abs(wanted - np.array(values)))
     least = min(PROGRESS, 0.1 * MOST_STEPS * largest_step) * left[0]
-    return bool(left[-MOST_STEPS - 1] - left[-1] < least)
+    return [] if left[-MOST_STEPS - 1] - left[-1] >= least else values[-MOST_STEPS:]
