@@ -99,6 +99,7 @@ def test_bifurcations_without_end_cut_the_step(monkeypatch: pytest.MonkeyPatch) 
 
     monkeypatch.setattr(critical._Search, "seen", lambda self, distance: Point())
     monkeypatch.setattr(critical._Search, "singular", lambda self, low, high: (low, 0.5 * (low + high), low))
+    monkeypatch.setattr(critical._Search, "check_gap", lambda self, below, above: None)
     monkeypatch.setattr(critical._Search, "between", lambda self, below, above, at: at)
     with pytest.raises(StepFailure, match="more than 10 bifurcations lie within one step"):
         list(search.bifurcations(0.0, 1.0))

@@ -280,19 +280,20 @@ class Follower:
         )
 
     def _turned(self) -> str:
-        """The first limit point of the stage, beyond which no state is reached by the load alone."""
-        turns = [
-            point for point in self.path.critical_points if point.kind == LIMIT_POINT and point.stage == self.stage
-        ]
+        """The first limit point of the stage, and what the states since are; "" without one."""
+        here = [point for point in self.path.critical_points if point.stage == self.stage]
+        turns = [point for point in here if point.kind == LIMIT_POINT]
         if not turns:
             return ""
-        after = [step for step in self.path.steps if step.stage == self.stage and step.arc_length > turns[0].arc_length]
-        unstable = sum(bool(step.negative_pivots) for step in after)
-        again = f" and again {len(turns) - 1} times" if len(turns) > 2 else " and once again" if len(turns) == 2 else ""
+        first = turns[0]
+        since = [step for step in self.path.steps if step.stage == self.stage and step.arc_length > first.arc_length]
+        unstable = sum(bool(step.negative_pivots) for step in since)
+        more = len(turns) - 1
+        again = f", and {more} more time{'s' * (more != 1)} after it" if more else ""
         return (
-            f" The load factor turned at {turns[0].load_factor:.6g} (critical point {turns[0].number}){again}; "
-            f"{unstable} of the {len(after)} states since are unstable. Under a load that grows further the body jumps "
-            "there, and where to is a matter of dynamics: a stop below that load factor is reached."
+            f" The load factor turned at {first.load_factor:.6g} (critical point {first.number}){again}; {unstable} of "
+            f"the {len(since)} states since are unstable. Where the body jumps to under a growing load, a path of "
+            "equilibria does not tell."
         )
 
     def _position(self) -> str:
