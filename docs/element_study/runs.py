@@ -101,7 +101,10 @@ class Store:
 def _digest() -> str:
     """Of every source that a solve is made of."""
     package = ROOT / "src" / "magshell"
-    folders = ("shell", "materials", "magnetics", "mesh", "linalg", "solver", "loads", "problem/examples")
+    folders = (
+        "shell", "materials", "magnetics", "mesh", "model", "equations", "evaluation", "linalg", "solver",
+        "problem/examples",
+    )  # fmt: skip
     files = [file for folder in folders for file in (package / folder).rglob("*") if file.suffix in (".py", ".toml")]
     files += [file for file in package.glob("*.py") if file.name not in ("__main__.py", "cli.py", "progress.py")]
     digest = hashlib.sha256()

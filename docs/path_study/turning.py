@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import magshell as ms
 from magshell.output.style import ACCENT, COLOURS, GREY
-from path_study.page import LEGEND, TEXT, Findings, draw, dress, figure, legend_of_marks
+from path_study.page import LEGEND, TEXT, Findings, draw, dress, figure, legend_of_marks, table
 from path_study.runs import Place, Runs, Trace, profile
 from path_study.strip import LAME, LENGTH, MU, REMANENCE, THICKNESS, WIDTH, strip, tip
 
@@ -20,6 +21,16 @@ if TYPE_CHECKING:
 WEAK, STRONG = 3e-3, 6e-3
 """Below and above the field at which the strip buckles when it is reversed, T."""
 LIFTING = 5e-3
+TURNED, THIN = 5e-3, 0.42e-3
+HOLDS = {
+    "at both corners of one end and the middle of the other": ((0.0, 0.0), (0.0, 1.0), (1.0, 0.5)),
+    "at three corners": ((0.0, 0.0), (0.0, 1.0), (1.0, 0.0)),
+    "at both corners of one end and half-way along a side": ((0.0, 0.0), (0.0, 1.0), (0.5, 0.0)),
+    "at both corners of one end and a quarter along a side": ((0.0, 0.0), (0.0, 1.0), (0.25, 0.0)),
+    "at both corners of one end and an eighth along a side": ((0.0, 0.0), (0.0, 1.0), (0.125, 0.0)),
+    "across its middle": ((0.5, 0.0), (0.5, 1.0), (0.625, 0.0)),
+}
+"""Three points that hold a thin strip, in parts of its length and width."""
 DENSITY = 2400.0
 FINE = ms.Settings(largest_step=0.04)
 
@@ -30,6 +41,21 @@ def turning(magnitude: float) -> ms.Model:
         (magnitude, 0.0, 0.0), history=(1.0, 1.0), rotation_axis=(0.0, -1.0, 0.0), rotation=(0.0, 2.0 * math.pi)
     )
     return replace(strip(), field=field, stages=(ms.Stage("on"), ms.Stage("around", "arc-length")))
+
+
+def held(hold: str, elements: tuple[int, int] = (8, 2)) -> ms.Model:
+    """A thin strip on three points, which hold it as a body and no more, in a field that turns once around."""
+    mesh = ms.mesh.rectangle(LENGTH, WIDTH, elements)
+    for name, (along, across) in zip("abc", HOLDS[hold], strict=True):
+        mesh = mesh.select_nodes(name, x1=along * LENGTH, x2=across * WIDTH)
+    held = [("a", 1), ("a", 2), ("a", 3), ("b", 1), ("b", 3), ("c", 3)]
+    material = ms.MicropolarNeoHookean(MU, LAME, MU / 10, THIN / 10)
+    return ms.Model(
+        ms.Shell(mesh, THIN, material, ms.remanence.constant((REMANENCE, 0, 0))),
+        [ms.Prescribe(name, "u", component, 0.0) for name, component in held],
+        ms.UniformField((TURNED, 0, 0), history=(1, 1), rotation_axis=(0, 1, 0), rotation=(0, 2.0 * math.pi)),
+        stages=[ms.Stage(), ms.Stage()],
+    )
 
 
 def weighed(order: tuple[str, ...]) -> ms.Model:
@@ -96,13 +122,35 @@ def study(runs: Runs) -> Findings:
         f"{1e3 * STRONG:g} mT the path turns back at {turns}. Weight and field in either order end in the same state, "
         f"to {same:.0e}; without the field the strip sags again as before, to {back:.0e}."
     )
+    rows = [_held_row(hold, runs.of(f"held {hold}", lambda hold=hold: held(hold))) for hold in HOLDS]
+    head = [
+        "Held",
+        "Steps",
+        "of them unstable",
+        "Cuts",
+        "Linear solves",
+        "Limit points",
+        "Runs back by (°)",
+        "Reaches (°)",
+    ]
     new = figure((13.0, 9.0))
     panels = new.subplot_mosaic([["angle", "weight"], ["around", "sagging"]], height_ratios=(1.2, 1.0))
     _angle_panel(panels["angle"], around)
     _weight_panel(panels["weight"], {"weight, then field": first, "field, then weight": other})
     _around_panel(panels["around"], around[STRONG].measured)
     _sagging_panel(panels["sagging"], first.measured["shapes"])
-    return Findings({"turning": words}, {"turning": new})
+    return Findings({"turning": words, "turning-held": table(head, rows)}, {"turning": new})
+
+
+def _held_row(hold: str, trace: Trace) -> list[str]:
+    around = [place for place in trace.stages(1) if place.kind == "step"]
+    angles = [0.0, *(angle(place) for place in around)]
+    back = sum(max(before - after, 0.0) for before, after in pairwise(angles))
+    figures = [
+        sum(place.kind == "step" for place in trace.places) - 1, sum(not place.stable for place in around), trace.cuts,
+        trace.solves, sum(place.kind == "limit point" for place in trace.critical),
+    ]  # fmt: skip
+    return [hold, *map(str, figures), f"{back:.0f}", f"{angles[-1]:.0f}"]
 
 
 def angle(place: Place) -> float:

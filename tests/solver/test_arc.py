@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as some
 
 from magshell import InputError, Path, Settings, SolveError, Stage, solve
-from magshell.solver import follower
+from magshell.solver import follower, step_control
 from magshell.solver.constraints import LOAD_WEIGHT
 from magshell.solver.newton import newton
 from solver.arches import arch, loads, relative, sink, to_the_crown_at
@@ -152,7 +152,7 @@ def test_probe_that_a_support_holds() -> None:
 
 @pytest.mark.parametrize("stage", [Stage(), BY_ARC], ids=["load", "arc-length"])
 def test_a_path_that_wanders_ends_with_a_reason(monkeypatch: pytest.MonkeyPatch, stage: Stage) -> None:
-    monkeypatch.setattr(follower, "MOST_STEPS", 8)
+    monkeypatch.setattr(step_control, "MOST_STEPS", 8)
     record = Record()
     with pytest.raises(
         SolveError, match=r"load factor .*: the last 8 steps came no nearer to the next stop, load factor 1"

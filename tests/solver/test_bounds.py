@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,11 +12,10 @@ from hypothesis import strategies as some
 
 import magshell as ms
 from magshell import Settings, SolveError, solve
-from magshell.shell.state import State
-from magshell.solver import critical, follower
+from magshell.solver import critical, step_control
 from magshell.solver.follower import Follower
-from magshell.solver.goals import LoadGoal
-from magshell.solver.newton import StepFailure, Trial
+from magshell.solver.newton import StepFailure
+from magshell.solver.step_control import stagnant
 from solver.models import Record, strip
 
 
@@ -57,13 +55,13 @@ def test_failures_in_a_row_have_an_end(last: int, smallest: float) -> None:
     solved = 0
 
     class Failing(Follower):
-        def _solved(self, attempt, goal):
+        def _solved(self, attempt, metric, before, goal):
             nonlocal solved
             if solved < last:
-                found = super()._solved(attempt, goal)
+                found = super()._solved(attempt, metric, before, goal)
                 solved += found is not None
                 return found
-            lengths.append(attempt.distance)
+            lengths.append(attempt.intended)
             self.failure = StepFailure("meant to")
             return None
 
@@ -76,7 +74,7 @@ def test_failures_in_a_row_have_an_end(last: int, smallest: float) -> None:
 
 
 def test_a_trial_that_is_not_finite_ends(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(follower, "CUT", math.nan)
+    monkeypatch.setattr(step_control, "CUT", math.nan)
     record = Record()
     with pytest.raises(SolveError, match="after 1 cut the step"):
         solve(strip(field=(0, 0, 1e3)), Settings(), [record])
@@ -86,16 +84,8 @@ def test_a_trial_that_is_not_finite_ends(monkeypatch: pytest.MonkeyPatch) -> Non
 @pytest.mark.parametrize(("largest", "strays"), [(1.0, True), (5e-5, False)])
 def test_small_steps_that_were_asked_for_are_progress(largest: float, strays: bool) -> None:
     """Half a hundredth of the way in a hundred steps: little, and all that such a largest step allows."""
-    steps = [Trial(State.undeformed(1, 1, 1), 5e-5 * number, None) for number in range(1, 200)]
-    one = object.__new__(Follower)
-    one.taken, one.settings = len(steps), Settings(largest_step=largest, first_step=min(largest, 0.01))
-    one.path = SimpleNamespace(steps=steps)
-    one._strayed = lambda goal, values: "strayed"
-    if not strays:
-        one._stray(LoadGoal(1.0))
-        return
-    with pytest.raises(StepFailure, match="strayed"):
-        one._stray(LoadGoal(1.0))
+    values = [5e-5 * number for number in range(1, 200)]
+    assert list(stagnant(values, 1.0, largest)) == (values[-100:] if strays else [])
 
 
 def test_bifurcations_without_end_cut_the_step(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -109,6 +99,7 @@ def test_bifurcations_without_end_cut_the_step(monkeypatch: pytest.MonkeyPatch) 
 
     monkeypatch.setattr(critical._Search, "seen", lambda self, distance: Point())
     monkeypatch.setattr(critical._Search, "singular", lambda self, low, high: (low, 0.5 * (low + high), low))
+    monkeypatch.setattr(critical._Search, "check_gap", lambda self, below, above: None)
     monkeypatch.setattr(critical._Search, "between", lambda self, below, above, at: at)
     with pytest.raises(StepFailure, match="more than 10 bifurcations lie within one step"):
         list(search.bifurcations(0.0, 1.0))

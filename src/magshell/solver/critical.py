@@ -22,6 +22,7 @@ from magshell.equations.discretisation import Assembly
 from magshell.linalg import Factorisation, SingularMatrix
 from magshell.shell.state import State
 from magshell.solver.constraints import Metric, Sphere
+from magshell.solver.continuity import between, length_along
 from magshell.solver.newton import Solution, StepFailure, System, Trial, factorise, newton
 from magshell.solver.track import Point, point_at, trial_at
 
@@ -30,6 +31,8 @@ LIMIT_POINT, BIFURCATION = "limit point", "bifurcation"
 ACCURACY, COARSE_CLEARANCE, CLEARANCE = 1e-6, 1e-2, 1e-4
 # Bifurcations that are looked for in one step; where there are more, it is made again, shorter.
 MOST_IN_A_STEP = 10
+# Largest distance of the points on either side of a critical point, over the difference of their distances.
+GAP = 10.0
 
 Report = Callable[[Trial, int, str, float], None]
 
@@ -135,6 +138,8 @@ class _Search:
         solution = Solution(own, system.assemble(own), [0.0], None, None)
         self.factors = factorise(system, solution.assembly)
         point = point_at(system, self.metric, solution, self.factors, before.arc_length + distance, along)
+        if distance > 0.0:
+            length_along(self.metric, before, point)
         self.known[distance] = point
         return point
 
@@ -165,6 +170,7 @@ class _Search:
             if first is None or last is None or first == last:
                 return
             below, above, at = self.singular(low, high)
+            self.check_gap(below, above)
             yield self.between(below, above, at)
             low = above
         raise StepFailure(f"more than {MOST_IN_A_STEP} bifurcations lie within one step")
@@ -194,6 +200,12 @@ class _Search:
         size = abs(self.factors.smallest_eigenpair()[0])
         return size if pivots == first else -size
 
+    def check_gap(self, below: float, above: float) -> None:
+        """Whether the points at two distances are neighbours; raises StepFailure where one path ends at another's."""
+        gap = self.metric.norm(*between(self.seen(below), self.seen(above)))
+        if gap > GAP * (above - below):
+            raise StepFailure("the step jumps from one path to another")
+
     def between(self, below: float, above: float, at: float) -> Found:
         """The bifurcation at a distance, on the path through the points on either side of it, with its mode."""
         first, last, system = self.seen(below), self.seen(above), self.system
@@ -217,6 +229,9 @@ class _Search:
         margin = CLEARANCE * self.length
         near = max(distance - margin, 0.0), min(distance + margin, self.length)
         sides = self.seen(near[0]).negative_pivots, self.seen(near[1]).negative_pivots
+        self.check_gap(*near)
+        if None not in sides and sides[0] == sides[1]:
+            raise StepFailure("the load factor turns where the tangent is not singular")
         point = self.point(distance)
         assert self.factors is not None
         mode = self.system.discretisation.direction(self.factors.smallest_eigenpair()[1]).nodal

@@ -4,59 +4,30 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
 from magshell.equations.instant import Increment
 from magshell.evaluation.balance import Balance, balance
-from magshell.solver.constraints import Constraint, Metric, Sphere
-from magshell.solver.critical import LIMIT_POINT, CriticalPoint, locate, passed
+from magshell.solver.attempt import Attempt, next_attempt
+from magshell.solver.constraints import Metric
+from magshell.solver.continuity import check_near, length_along, measured
+from magshell.solver.critical import LIMIT_POINT, CriticalPoint, Found, locate, passed
 from magshell.solver.diagnosis import diagnosis
 from magshell.solver.events import Iteration, Observer
-from magshell.solver.goals import Goal, LoadGoal, ProbeGoal, goals_of
+from magshell.solver.goals import Goal, ProbeGoal, goals_of
 from magshell.solver.newton import Solution, StepFailure, System, Trial, newton
 from magshell.solver.path import Path
 from magshell.solver.starts import Start, start_of
 from magshell.solver.step import Step
-from magshell.solver.track import Direction, Point, Slope, arc, close_factors, crossing, known, point_at, trial_at
+from magshell.solver.step_control import StepControl, StepRules, stagnant
+from magshell.solver.track import Direction, Point, Slope, close_factors, point_at
 from magshell.solver.waypoint import Waypoint
 
-GROWTH, CUT = 2.5, 0.35
 # Failures in a row after which the arc length is held instead.
 PATIENCE = 2
-# A step that failed is made again with at most this part of its length along the path.
-LEAST_CUT = 0.5
-# So many steps must come nearer to the next goal by this share of the way to it.
-MOST_STEPS, PROGRESS = 100, 0.01
-# Largest angle between a step and the direction of the path at either end: beyond it the path has been left.
-SHARPEST = np.pi / 3
-# Largest distance of a solution from its trial state, in lengths of the step: beyond it another path may have been met.
-MISS = 0.2
-# A step whose load grows by less than this share of what the slopes at both its ends say has jumped over a fold.
-JUMP = 0.5
 # First step along the mode of a branch, in sizes of the body.
 BRANCH_STEP = 0.01
-
-
-class Attempt(NamedTuple):
-    """A step to be made.
-
-    Attributes
-    ----------
-    trial : Trial
-    constraint : Constraint or None
-        What is held besides the supports; None: the load factor.
-    at_goal : bool
-        Whether it leads to the goal.
-    distance : float
-        Along the path, as it is expected.
-    """
-
-    trial: Trial
-    constraint: Constraint | None
-    at_goal: bool
-    distance: float
 
 
 class Follower:
@@ -73,7 +44,8 @@ class Follower:
         mesh = path.model.shell.mesh
         self.metric = Metric(1.0 / (len(mesh.points) * mesh.size**2))
         self.stage, self.track = 0, list[Point]()
-        self.goal, self.taken, self.by_arc, self.radius = 0, 0, False, 0.0
+        self.goal, self.taken, self.by_arc = 0, 0, False
+        self.control = StepControl(StepRules(self.settings.target_iterations, self.settings.smallest_step), 0.0)
         self.failure = StepFailure("")
         self.begin, self.cpu = time.perf_counter(), time.process_time() - path.cpu_seconds
 
@@ -93,6 +65,7 @@ class Follower:
     def enter(self, number: int) -> Start:
         """Make a stage the present one."""
         start, self.stage = start_of(self.path, number), number
+        self.origin = start.state
         course = self.path.model.course(number, start.amounts)
         self.path.courses[number:] = [course]
         self.system = self.system._replace(course=course)
@@ -102,9 +75,8 @@ class Follower:
         """The first point of a stage, and the size of its first step."""
         point, solution = self._first(start, goal)
         self.track = [point]
-        self.radius = BRANCH_STEP
-        if start.mode is None:
-            self.radius = self.settings.first_step / abs(point.slope.load)
+        size = BRANCH_STEP if start.mode is not None else self.settings.first_step / abs(point.slope.load)
+        self.control = self.control._replace(size=size, failures=0)
         self._head_for(0)
         if not self.path.steps:
             self._keep(point, solution, None, [])
@@ -116,7 +88,8 @@ class Follower:
         if len(own) < 3 and self.stage > 0:
             self.track.insert(0, self._first(start, goal)[0])
         last = own[-1]
-        self.goal, self.taken, self.by_arc, self.radius = last.goal, last.taken, last.by_arc, last.radius
+        self.goal, self.taken, self.by_arc = last.goal, last.taken, last.by_arc
+        self.control = self.control._replace(size=last.radius)
         self.path.cuts, self.system.linear_solver.factorisations = last.cuts, last.solves
 
     def _first(self, start: Start, goal: Goal) -> tuple[Point, Solution]:
@@ -150,91 +123,64 @@ class Follower:
         A step that fails is made again at most half as long, so that failures in a row have an end; `_stray` bounds the
         steps that succeed.
         """
-        failures = 0
         while True:
-            attempt = self._next(goal)
-            last, trial = self.track[-1], attempt.trial
-            distance = self.metric.norm(trial.state.u - last.state.u, trial.load_factor - last.load_factor)
-            solved = self._solved(attempt, goal)
-            if solved is not None:
-                point, solution, critical = solved
-                grown = distance * self._growth(solution.solves)
-                self.radius = max(self.radius, grown) if attempt.at_goal else grown
-                self.taken += 1
-                if attempt.at_goal:
-                    self._head_for(self.goal + 1)
-                self.track = [*self.track[-2:], point]
-                self._keep(point, solution, self._balance(solution), critical)
-                if attempt.at_goal:
-                    return
-                failures = 0
-                self._stray(goal)
+            metric = self.local_metric()
+            points = measured(metric, self.track)
+            attempt = next_attempt(self.system, metric, points, goal, self.control.size, self.by_arc)
+            solved = self._solved(attempt, metric, points[-1], goal)
+            if solved is None:
+                self.control = self.control.failed(attempt.size, attempt.intended)
+                self.by_arc |= self.control.failures == PATIENCE
+                if self.control.exhausted:
+                    raise StepFailure(self._give_up(attempt.trial.load_factor))
                 continue
-            failures += 1
-            self.by_arc |= failures == PATIENCE
-            self.radius = min(CUT * distance, LEAST_CUT * attempt.distance)
-            if not self.radius >= self.settings.smallest_step:
-                raise StepFailure(self._give_up(trial.load_factor))
+            point, solution, critical = solved
+            self.control = self.control.succeeded(attempt.size, solution.solves, shortened=attempt.at_goal)
+            self.taken += 1
+            if attempt.at_goal:
+                self._head_for(self.goal + 1)
+            self.track = [*self.track[-2:], point]
+            self._keep(point, solution, self._balance(solution), critical)
+            if attempt.at_goal:
+                return
+            self._stray(goal)
 
     def _stray(self, goal: Goal) -> None:
         """Raise StepFailure if the last steps came no nearer to the goal than the ones before."""
         values = [goal.value(step) for step in self.path.steps[-self.taken :]]
-        if len(values) <= MOST_STEPS:
-            return
-        left = np.minimum.accumulate(np.abs(goal.wanted - np.array(values)))
-        least = min(PROGRESS, 10.0 * self.settings.largest_step) * left[0]
-        if left[-MOST_STEPS - 1] - left[-1] < least:
-            raise StepFailure(self._strayed(goal, values[-MOST_STEPS:]))
+        if last := stagnant(values, goal.wanted, self.settings.largest_step):
+            raise StepFailure(self._strayed(goal, last))
 
-    def _next(self, goal: Goal) -> Attempt:
-        """The next trial state, and what is held in its step."""
-        longest = self._longest() if isinstance(goal, LoadGoal) else self.radius
-        track = known(self.track, longest)
-        values, last = [goal.value(point) for point in track], track[-1]
-        at = crossing(track, values, goal.slope(last.slope), goal.wanted, 2.0 * longest)
-        if at is not None and at <= 1.3 * longest:
-            wanted = goal.wanted if isinstance(goal, LoadGoal) else None
-            return Attempt(self._trial(at, wanted), goal.hold_wanted(), True, at)
-        distance = longest if at is None else 0.5 * at
-        trial = self._trial(distance)
-        nearer = (goal.value(trial) - values[-1]) * (goal.wanted - values[-1]) > 0.0
-        if nearer and not self.by_arc:
-            return Attempt(trial, goal.hold(trial), False, distance)
-        chord: Direction = trial.state.u - last.state.u, trial.load_factor - last.load_factor
-        sphere = Sphere(self.metric, last.state.u, last.load_factor, *chord, self.metric.norm(*chord))
-        return Attempt(trial, sphere, False, distance)
+    def local_metric(self) -> Metric:
+        """In which the load factor weighs no less than the displacements of the stage so far."""
+        steps = [step for step in self.path.steps if step.stage == self.stage]
+        moved = max((self.metric.norm(step.state.u - self.origin.u, 0.0) for step in steps), default=0.0)
+        return self.metric._replace(load_weight=max(self.metric.load_weight, moved))
 
-    def _trial(self, distance: float, load_factor: float | None = None) -> Trial:
-        return trial_at(self.discretisation, self.system.course, known(self.track, distance), distance, load_factor)
-
-    def _longest(self) -> float:
-        """The radius, or less where the load factor would change by more than the largest step."""
-        track, largest = known(self.track, self.radius), self.settings.largest_step
-        loads = [point.load_factor for point in track]
-        limits = [
-            crossing(track, loads, track[-1].slope.load, loads[-1] + change, self.radius)
-            for change in (largest, -largest)
-        ]
-        return min((limit for limit in limits if limit is not None), default=self.radius)
-
-    def _solved(self, attempt: Attempt, goal: Goal) -> tuple[Point, Solution, list[CriticalPoint]] | None:
+    def _solved(
+        self, attempt: Attempt, metric: Metric, last: Point, goal: Goal
+    ) -> tuple[Point, Solution, list[CriticalPoint]] | None:
         """What a step leads to, and the critical points passed; None, and the observers know why, if it failed."""
-        last, trial = self.track[-1], attempt.trial
+        trial = attempt.trial
         try:
             solution = newton(self.system, trial, attempt.constraint, lambda *heard: self._report(trial, *heard))
             found = solution.trial
             chord: Direction = found.state.u - last.state.u, found.load_factor - last.load_factor
-            # No factors outlive their use: two sets of them at a time would be twice the memory.
-            factors, solution = close_factors(self.metric, solution, chord), solution._replace(factors=None)
-            point = point_at(self.system, self.metric, solution, factors, 0.0, chord)
-            factors = None
-            length = arc(self.metric, chord, last.slope, point.slope)
-            point = point._replace(arc_length=last.arc_length + length)
             missed: Direction = found.state.u - trial.state.u, found.load_factor - trial.load_factor
-            self._check(point, chord, length, self.metric.norm(*missed))
+            # No factors outlive their use: two sets of them at a time would be twice the memory.
+            factors, solution = close_factors(metric, solution, chord), solution._replace(factors=None)
+            point = point_at(self.system, metric, solution, factors, 0.0, chord)
+            factors = None
+            length = length_along(metric, last, point)
+            check_near(metric.norm(*missed), length)
+            point = point._replace(arc_length=length)
             if not attempt.at_goal and (goal.wanted - goal.value(last)) * (goal.wanted - goal.value(point)) <= 0.0:
                 raise StepFailure("the step goes beyond a stop")
-            return point, solution, self._located(last, point)
+            before = self.track[-1]
+            critical = [*locate(self.system, metric, last, point, self._report)] if passed(last, point) else []
+            own = measured(self.metric, [before, point])
+            point = own[-1]._replace(arc_length=before.arc_length - own[0].arc_length)
+            return point, solution, self._numbered(critical, before.arc_length, -own[0].arc_length / length)
         except StepFailure as failure:
             self.failure = StepFailure(str(failure), failure.inverted)  # without the frames, which hold the factors
             self.path.cuts += 1
@@ -242,33 +188,23 @@ class Follower:
                 observer.cut(trial.load_factor, str(failure))
             return None
 
-    def _check(self, point: Point, chord: Direction, length: float, missed: float) -> None:
-        """Whether a point lies on the path that was followed so far; raises StepFailure with what speaks against it."""
-        last, distance = self.track[-1], self.metric.norm(*chord)
-        if missed > MISS * length:
-            raise StepFailure("the solution is not where the path was expected")
-        sharpest = np.cos(SHARPEST) * distance
-        for slope in (last.slope, point.slope):
-            if self.metric.product(slope.direction, chord) < sharpest:
-                raise StepFailure("the step leaves the path, or turns back on it")
-        least = min(last.slope.load, point.slope.load)
-        if least > 0.0 and chord[1] < JUMP * least * length:
-            raise StepFailure("the step jumps over a part of the path where the load factor falls")
-
-    def _located(self, before: Point, after: Point) -> list[CriticalPoint]:
-        """The critical points between two points; raises StepFailure if no path leads from one to the other."""
-        if not passed(before, after):
-            return []
+    def _numbered(self, critical: Sequence[Found], before: float, scale: float) -> list[CriticalPoint]:
+        """Critical points of a step; their arc lengths in it, times a scale, are added to that before it."""
         course, number = self.system.course, len(self.path.critical_points)
         return [
             CriticalPoint(
-                number + count, kind, self.stage, point.load_factor, course.at(point.load_factor).flux_density,
-                point.arc_length, point.state, mode, pivots,
+                number=number + count,
+                kind=found.kind,
+                stage=self.stage,
+                load_factor=found.point.load_factor,
+                flux_density=course.at(found.point.load_factor).flux_density,
+                arc_length=before + scale * found.point.arc_length,
+                state=found.point.state,
+                mode=found.mode,
+                negative_pivots=found.negative_pivots,
             )
-            for count, (kind, point, mode, pivots) in enumerate(
-                locate(self.system, self.metric, before, after, self._report), start=1
-            )
-        ]  # fmt: skip
+            for count, found in enumerate(critical, start=1)
+        ]
 
     def _balance(self, solution: Solution) -> Balance:
         loading = self.system.course.at(solution.trial.load_factor)
@@ -276,11 +212,17 @@ class Follower:
 
     def _report(self, trial: Trial, iteration: int, kind: str, residual: float) -> None:
         self.path.solves = self.system.linear_solver.factorisations
-        seconds = time.perf_counter() - self.begin
+        told = Iteration(
+            step=len(self.path.steps),
+            stage=self.stage,
+            load_factor=trial.load_factor,
+            iteration=iteration,
+            residual=residual,
+            kind=kind,
+            seconds=time.perf_counter() - self.begin,
+        )
         for observer in self.observers:
-            observer.iterated(
-                Iteration(len(self.path.steps), self.stage, trial.load_factor, iteration, residual, kind, seconds)
-            )
+            observer.iterated(told)
 
     def _keep(
         self, point: Point, solution: Solution, balanced: Balance | None, critical: Sequence[CriticalPoint]
@@ -288,15 +230,32 @@ class Follower:
         """Lengthen the path, and tell of it."""
         loading = self.system.course.at(point.load_factor)
         step = Step(
-            len(self.path.steps), point.load_factor, point.state, solution.solves, solution.residuals[-1], balanced,
-            point.arc_length, self.stage, loading.flux_density, loading.loads, point.negative_pivots,
-        )  # fmt: skip
+            number=len(self.path.steps),
+            load_factor=point.load_factor,
+            state=point.state,
+            iterations=solution.solves,
+            residual=solution.residuals[-1],
+            balance=balanced,
+            arc_length=point.arc_length,
+            stage=self.stage,
+            flux_density=loading.flux_density,
+            loads=loading.loads,
+            negative_pivots=point.negative_pivots,
+        )
         self.path.add(
             Waypoint(
-                step, tuple(critical), point.slope, self.goal, self.taken, self.by_arc, self.radius, self.path.cuts,
-                self.system.linear_solver.factorisations, time.process_time() - self.cpu,
+                step=step,
+                critical_points=tuple(critical),
+                slope=point.slope,
+                goal=self.goal,
+                taken=self.taken,
+                by_arc=self.by_arc,
+                radius=self.control.size,
+                cuts=self.path.cuts,
+                solves=self.system.linear_solver.factorisations,
+                cpu_seconds=time.process_time() - self.cpu,
             )
-        )  # fmt: skip
+        )
         for observer in self.observers:
             observer.kept(self.path)
         for observer in self.observers:
@@ -305,31 +264,38 @@ class Follower:
             for observer in self.observers:
                 observer.critical(one)
 
-    def _growth(self, solves: int) -> float:
-        """Factor of the step size after the solves that the last step took."""
-        return float(np.clip(self.settings.target_iterations / max(solves, 1), 0.4, GROWTH))
-
     def _give_up(self, load_factor: float) -> str:
         """Where the path ends, what fails there, and why."""
-        path, cuts = self.path, self.path.cuts
-        turns = [point for point in path.critical_points if point.kind == LIMIT_POINT and point.stage == self.stage]
-        turned = (
-            f" The load factor turned at {turns[-1].load_factor:.6g} (critical point {turns[-1].number})."
-            if turns
-            else ""
-        )
+        cuts = self.path.cuts
         return (
             f"{self._position()}: after {cuts} cut{'s' * (cuts != 1)} the step to {load_factor:.6g} still fails: "
-            f"{self.failure}.{turned} {self._diagnosis(self.failure.inverted)}"
+            f"{self.failure}.{self._turned()} {self._diagnosis(self.failure.inverted)}"
         )
 
     def _strayed(self, goal: Goal, values: Sequence[float]) -> str:
         """The same of a path that goes on without coming nearer to a goal."""
         turns = int(np.count_nonzero(np.diff(np.sign(np.diff(values)))))
         return (
-            f"{self._position()}: the last {MOST_STEPS} steps came no nearer to the next stop, {goal.named}; "
-            f"it went to and fro between {min(values):.4g} and {max(values):.4g} and turned {turns} times. "
-            f"{self._diagnosis(None)}"
+            f"{self._position()}: the last {len(values)} steps came no nearer to the next stop, {goal.named}; "
+            f"it went to and fro between {min(values):.4g} and {max(values):.4g} and turned {turns} times."
+            f"{self._turned()} {self._diagnosis(None)}"
+        )
+
+    def _turned(self) -> str:
+        """The first limit point of the stage, and what the states since are; "" without one."""
+        here = [point for point in self.path.critical_points if point.stage == self.stage]
+        turns = [point for point in here if point.kind == LIMIT_POINT]
+        if not turns:
+            return ""
+        first = turns[0]
+        since = [step for step in self.path.steps if step.stage == self.stage and step.arc_length > first.arc_length]
+        unstable = sum(bool(step.negative_pivots) for step in since)
+        more = len(turns) - 1
+        again = f", and {more} more time{'s' * (more != 1)} after it" if more else ""
+        return (
+            f" The load factor turned at {first.load_factor:.6g} (critical point {first.number}){again}; {unstable} of "
+            f"the {len(since)} states since are unstable. Where the body jumps to under a growing load, a path of "
+            "equilibria does not tell."
         )
 
     def _position(self) -> str:
