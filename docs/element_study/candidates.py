@@ -14,7 +14,8 @@ from scipy.spatial.transform import Rotation
 import magshell as ms
 from element_study.cases import built_in, moved
 from magshell import assembly
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
+from magshell.equations.instant import Instant
 from magshell.mesh import Mesh
 from magshell.model.course import Loading
 from magshell.model.loads import Force
@@ -134,7 +135,7 @@ def stiffness(mesh: Mesh, element: ElementType, length_scale: float = 0.1) -> np
     )  # fmt: skip
     discretisation = Discretisation(body, lambda graph: np.arange(graph.shape[0]))
     matrix = discretisation.assemble(
-        discretisation.undeformed(), Loading(np.zeros(3), np.zeros(0), np.zeros((len(mesh.points), 10)))
+        Instant(discretisation.undeformed(), Loading(np.zeros(3), np.zeros(0), np.zeros((len(mesh.points), 10))))
     ).matrix
     return 0.5 * (matrix.toarray() + matrix.toarray().T)
 

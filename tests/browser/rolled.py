@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import magshell as ms
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
 from magshell.linalg.ordering import nested_dissection
 from magshell.mesh import Mesh
 from magshell.shell.state import State

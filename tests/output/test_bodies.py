@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from magshell import problem
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
 from magshell.linalg import nested_dissection
 from magshell.output.bodies import Body, cameras_for, faces, mirrored, render, shifted, solid, step_at, turned
 from magshell.output.panels import fitted

@@ -19,12 +19,12 @@ from battery import (
     random_increment,
     random_state,
 )
+from magshell.equations.assembly import Discretisation, InvertedElement
 from numba.core.runtime import _nrt_python, rtsys
 from solver.models import strip
 
 import magshell as ms
 from magshell.compiled import Kernel, inline
-from magshell.equations.assembly import Discretisation, InvertedElement
 from magshell.magnetics.law import forces_of
 from magshell.materials.law import stresses_of
 from magshell.materials.tensors import inverse_transpose

@@ -10,7 +10,7 @@ import pytest
 
 import magshell as ms
 from magshell import SolveError, problem, solve
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
 from magshell.linalg import nested_dissection
 from magshell.shell.state import State
 from magshell.solver.diagnosis import diagnosis, measure

@@ -8,7 +8,7 @@ from scipy.sparse.linalg import eigsh
 
 import magshell as ms
 from magshell.cli import main
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
 from magshell.linalg import make_solver, nested_dissection
 from magshell.mesh import Mesh
 from magshell.solver.buckling import FAR
