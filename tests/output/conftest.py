@@ -82,6 +82,7 @@ class FakePath:
             coupling=MicropolarCouple(),
             shell=SimpleNamespace(material=MicropolarNeoHookean(135e3, 3.25e6, 13.5e3, 9e-5), thickness=0.9e-3),
             probe_nodes={name: mesh.node_at(position) for name, position in probes.items()},
+            course=lambda stage: SimpleNamespace(at=lambda load_factor: None),
         )
         self.discretisation = FakeDiscretisation(self.model, mesh)
         self.critical_points, self.converged, self.reason = [], True, "the end of the path is reached"

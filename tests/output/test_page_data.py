@@ -96,7 +96,7 @@ def test_no_number_of_the_page_is_not_finite(path, monkeypatch):
     broken = np.linspace(0, 1, len(path.discretisation.mesh.elements))
     broken[::3] = np.nan
     monkeypatch.setitem(
-        outputs._OUTPUTS, "energy", Output("energy", "W", "J", "Broken.", "cell", 1, lambda d, state: broken)
+        outputs._OUTPUTS, "energy", Output("energy", "W", "J", "Broken.", "cell", 1, lambda reached: broken)
     )
     text = page(path)
     assert not re.search(r"\b(NaN|Infinity)\b", json.dumps(header(text)))

@@ -14,7 +14,6 @@ from magshell.evaluation.points import PointFields, evaluate, plane_stress_stret
 from magshell.model.course import Loading
 from magshell.shell import rotation
 from magshell.shell.state import State
-from magshell.shell.unknowns import COMPONENTS
 
 
 class Converged:
@@ -107,22 +106,21 @@ class Converged:
 
 
 class Reached(Protocol):
-    """A state on a path, with what acts there."""
+    """A state on a path, and where on it."""
 
     @property
     def state(self) -> State:
         """Unknowns."""
 
     @property
-    def flux_density(self) -> FloatArray:
-        """T, (3,)."""
+    def stage(self) -> int:
+        """Of the path, from 0."""
 
     @property
-    def loads(self) -> FloatArray:
-        """Multipliers of the model's loads."""
+    def load_factor(self) -> float:
+        """Of that stage."""
 
 
 def converged(discretisation: Discretisation, step: Reached) -> Converged:
-    """What outputs are evaluated of, at a step. (What is held is the state's.)"""
-    held = np.zeros((len(discretisation.mesh.points), COMPONENTS))
-    return Converged(discretisation, step.state, Loading(step.flux_density, step.loads, held))
+    """What outputs are evaluated of, at a step or another state of the path."""
+    return Converged(discretisation, step.state, discretisation.model.course(step.stage).at(step.load_factor))
