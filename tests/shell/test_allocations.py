@@ -21,16 +21,17 @@ from battery import (
     random_increment,
     random_state,
 )
-from magshell.equations.assembly import Discretisation, InvertedElement
 from numba.core.runtime import _nrt_python, rtsys
 from solver.models import strip
 
 import magshell as ms
-from magshell.compiled import Kernel, inline
-from magshell.magnetics.law import forces_of
-from magshell.materials.law import stresses_of
+from magshell.equations.discretisation import Discretisation
+from magshell.equations.instant import Instant
+from magshell.equations.term import InvertedElement
+from magshell.magnetics import law as coupling_laws
+from magshell.materials import law as material_laws
+from magshell.materials import neo_hookean
 from magshell.materials.tensors import inverse_transpose
-from magshell.shell.section import _forces_and_tangent, _stress_and_tangent
 
 
 @pytest.fixture(autouse=True)
