@@ -13,13 +13,13 @@ from scipy.spatial.transform import Rotation
 
 import magshell as ms
 from element_study.cases import built_in, moved
-from magshell import assembly
 from magshell.equations.discretisation import Discretisation
 from magshell.equations.instant import Instant
 from magshell.mesh import Mesh
 from magshell.model.course import Loading
 from magshell.model.loads import Force
 from magshell.model.supports import resolve
+from magshell.shell import body as shell_body
 from magshell.shell import geometry
 from magshell.shell.elements import PAPER, QUADRATIC, ElementType
 from magshell.shell.elements.definition import Rule, gauss
@@ -94,11 +94,11 @@ def assumed_values(wanted: bool) -> Iterator[None]:
         return full._replace(u=bilinear(low.u), director=director, phi=bilinear(low.phi), rotation=rotation)
 
     if wanted:
-        assembly.interpolation = assumed
+        shell_body.interpolation = assumed
     try:
         yield
     finally:
-        assembly.interpolation = original
+        shell_body.interpolation = original
 
 
 # -- zero modes ------------------------------------------------------------------------------------------------------

@@ -381,7 +381,7 @@ import numpy as np
 from magshell.materials import MicropolarNeoHookean
 from magshell.materials.law import evaluate
 logging.basicConfig(level=logging.INFO, format="%(message)s", stream=sys.stdout)
-print(evaluate(MicropolarNeoHookean(1.0, 1.7, 0.3, 0.2), np.diag([1.1, 1.2, 0.9]))[0].hex())
+print(float(evaluate(MicropolarNeoHookean(1.0, 1.7, 0.3, 0.2), np.diag([1.1, 1.2, 0.9]))[0]).hex())
 """
     environment = dict(os.environ, NUMBA_CACHE_DIR=str(tmp_path / "cache"))
     command = [sys.executable, "-c", script]
@@ -432,7 +432,7 @@ PROMPT = (
     + """
 import numpy as np
 from magshell.materials.law import callbacks, evaluate
-print(evaluate(UsersLaw(1.0, 1.7, 0.3, 0.2), np.diag([1.1, 1.2, 0.9]))[0].hex())
+print(float(evaluate(UsersLaw(1.0, 1.7, 0.3, 0.2), np.diag([1.1, 1.2, 0.9]))[0]).hex())
 print(callbacks[UsersLaw].is_compiled())
 """
 )
@@ -444,7 +444,7 @@ def test_a_law_typed_at_a_prompt_is_compiled_without_a_cache(tmp_path):
     environment = dict(os.environ, NUMBA_CACHE_DIR=str(tmp_path / "cache"))
     done = subprocess.run([sys.executable], input=script, env=environment, cwd=tmp_path, capture_output=True, text=True)
     assert not done.returncode, done.stderr
-    energy = material_laws.evaluate(example(MATERIAL), np.diag([1.1, 1.2, 0.9]))[0]
+    energy = float(material_laws.evaluate(example(MATERIAL), np.diag([1.1, 1.2, 0.9]))[0])
     assert done.stdout.split() == [energy.hex(), "False"]
     assert not list((tmp_path / "cache").rglob("*UsersLaw*"))
 
