@@ -31,8 +31,8 @@ from magshell.magnetics import DeformationGradientEnergy, MicroRotationEnergy
 from magshell.magnetics import law as coupling_laws
 from magshell.magnetics.law import OMEGA, M, coupling_law
 from magshell.materials import MicropolarMooneyRivlin, MicropolarStVenantKirchhoff
-from magshell.model.reference import make_of, stiffest_of
-from magshell.shell.body import Surface, reference_of
+from magshell.model.reference import make_of
+from magshell.shell.body import Surface, of_elements, reference_of
 from magshell.shell.geometry import Sections
 from shell import jets, oracle
 from shell.kernel_access import energy_gradient_and_hessian, unpack
@@ -47,7 +47,8 @@ def evaluated(d, make, state, elements=slice(None)):
     """Residuals, dense tangent and energies of some elements of a body, made as told."""
     nodes, shell = d.mesh.elements[elements], d.model.shell
     surface = Surface(nodes, d.mesh.points[nodes], d.normals[nodes], shell.element, shell.micro_rotation)
-    term = ShellTerm(reference_of(surface, make), len(d.mesh.points), stiffest_of(d.model)[elements])
+    stiffest = 2.0 * of_elements(make, "shear_modulus") + of_elements(make, "lame_lambda")
+    term = ShellTerm(reference_of(surface, make), len(d.mesh.points), stiffest)
     numbering = Numbering(d.free, d.shell.couplings(), lambda graph: np.arange(graph.shape[0]))
     insertion = Insertion(numbering, d.model.constraints)
     term.place(numbering, d.model.constraints)
@@ -62,7 +63,7 @@ def of_element(d, make, e):
     return make._replace(
         thickness=make.thickness[e : e + 1],
         sections=Sections(make.sections.z[e : e + 1], make.sections.heights[e : e + 1]),
-        remanence=make.remanence[e : e + 1],
+        remanence=make.remanence[e : e + 1, :1],
         materials=[material],
         couplings=[coupling],
         material_of=np.zeros((1, make.material_of.shape[1]), dtype=np.int64),
