@@ -16,7 +16,8 @@ import time
 import numpy as np
 from arm import arm
 
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
+from magshell.equations.instant import Instant, moved
 from magshell.linalg import SOLVERS, make_solver, nested_dissection
 
 
@@ -29,20 +30,19 @@ def measure(elements: int, solver: str, repeats: int) -> None:
     setup = time.process_time() - start
     linear_solver, factors = make_solver(solver), None
     state = discretisation.undeformed()
-    stresses = discretisation.stresses_at(state)
+    stresses = discretisation.predicted(state)
     iterations, factorisations, solves = [], [], []
     for _ in range(repeats + 1):
         start = time.process_time()
-        assembly = discretisation.assemble(state, discretisation.model.loading(0.002), stresses)
+        assembly = discretisation.assemble(Instant(state, discretisation.model.loading(0.002), stresses))
         assembled = time.process_time()
         factors = None
         factors = linear_solver.factorise(assembly.matrix)
         factorised = time.process_time()
-        increment = discretisation.expand(factors.solve(assembly.right_side))
+        increment = discretisation.correction(factors.solve(assembly.right_side))
         solved = time.process_time()
-        d_alpha = discretisation.recover(increment)
-        discretisation.predicted_stresses(state, increment, d_alpha)
-        state.moved(increment, d_alpha)
+        discretisation.predicted(state, increment)
+        moved(state, increment)
         iterations.append(time.process_time() - start)
         factorisations.append(factorised - assembled)
         solves.append(solved - factorised)

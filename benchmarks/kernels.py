@@ -15,8 +15,10 @@ from collections.abc import Callable
 import numpy as np
 from arm import arm
 
-from magshell.equations.assembly import LEVELS, Discretisation
+from magshell.equations.discretisation import Discretisation
+from magshell.equations.instant import Instant
 from magshell.linalg import nested_dissection
+from magshell.model.reference import LEVELS
 from magshell.shell.elements import ELEMENTS, ElementType
 from magshell.shell.point import SIZE
 
@@ -58,11 +60,11 @@ def measure(element: ElementType) -> None:
     discretisation = Discretisation(arm(120, 24, element), nested_dissection)
     elements = len(discretisation.mesh.elements)
     state = discretisation.undeformed()
-    stresses = discretisation.stresses_at(state)
+    stresses = discretisation.predicted(state)
     loading = discretisation.model.loading(0.01)
-    discretisation.assemble(state, loading, stresses)
-    residual = elements / best(lambda: discretisation.assemble(state, loading, stresses, tangent=False))
-    tangent = elements / best(lambda: discretisation.assemble(state, loading, stresses))
+    discretisation.assemble(Instant(state, loading, stresses))
+    residual = elements / best(lambda: discretisation.assemble(Instant(state, loading, stresses), tangent=False))
+    tangent = elements / best(lambda: discretisation.assemble(Instant(state, loading, stresses)))
     share = operations(element) * tangent / dgemm_peak()
     print(
         f"{element.name:17s} {residual:9.0f} residual/s {tangent:9.0f} residual and tangent/s, "

@@ -13,7 +13,8 @@ import subprocess
 import sys
 
 import magshell as ms
-from magshell.equations.assembly import Discretisation
+from magshell.equations.discretisation import Discretisation
+from magshell.equations.instant import Instant
 from magshell.linalg import make_solver, nested_dissection
 from magshell.solver.memory import need_of
 
@@ -42,7 +43,9 @@ def measure(elements: int, shape: str, element: str) -> None:
     discretisation = Discretisation(model, nested_dissection)
     state, factors = discretisation.undeformed(), None
     for _ in range(2):
-        matrix = discretisation.assemble(state, model.course(0).at(1.0), discretisation.stresses_at(state)).matrix
+        matrix = discretisation.assemble(
+            Instant(state, model.course(0).at(1.0), discretisation.predicted(state))
+        ).matrix
         assert matrix is not None
         factors = None
         factors = solver.factorise(matrix)

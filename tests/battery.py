@@ -18,6 +18,8 @@ from scipy.spatial.transform import Rotation
 
 from magshell import magnetics, materials
 from magshell.equations.discretisation import Discretisation
+from magshell.equations.instant import Increment
+from magshell.evaluation.converged import Converged
 from magshell.magnetics import UniformField, remanence
 from magshell.mesh import Mesh, rectangle, split
 from magshell.model.course import Loading
@@ -25,6 +27,7 @@ from magshell.model.shell import Shell
 from magshell.model.supports import resolve
 from magshell.shell.elements import ELEMENTS, QUADRATIC
 from magshell.shell.normals import nodal_normals
+from magshell.shell.point import INTERNAL
 from magshell.shell.state import State
 
 PARAMETERS = {
@@ -234,16 +237,21 @@ def random_state(d, seed, strain=0.1, turn=None):
 
 
 def random_increment(d, seed, size=0.1):
-    """A nodal increment (nodes, 10), zero where a node does not carry the field, and Δα."""
+    """An increment, zero where a node does not carry the field."""
     rng = np.random.default_rng(seed)
-    increment = size * rng.uniform(-1, 1, d.carried.shape) * d.carried
-    return increment, size * rng.uniform(-1, 1, (len(d.mesh.elements), d.modes, 3))
+    nodal = size * rng.uniform(-1, 1, d.carried.shape) * d.carried
+    return Increment(nodal, size * rng.uniform(-1, 1, (len(d.mesh.elements), d.reference.body.layout.modes, 3)))
+
+
+def strain_energy(d, state):
+    """Strain energy of each element (elements,)."""
+    return Converged(d, state, d.model.loading(1.0)).energies[:, INTERNAL]
 
 
 def dense(d, matrix):
     """The matrix on (node, component) pairs, zero where a component is fixed or absent: (10 nodes, 10 nodes)."""
     full = np.zeros((d.free.size, d.free.size))
-    at, number = np.flatnonzero(d.free), d.equations.number[d.free]
+    at, number = np.flatnonzero(d.free), d.numbering.number[d.free]
     full[np.ix_(at, at)] = matrix.toarray()[np.ix_(number, number)]
     return full
 

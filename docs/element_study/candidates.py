@@ -13,12 +13,13 @@ from scipy.spatial.transform import Rotation
 
 import magshell as ms
 from element_study.cases import built_in, moved
-from magshell import assembly
 from magshell.equations.discretisation import Discretisation
+from magshell.equations.instant import Instant
 from magshell.mesh import Mesh
 from magshell.model.course import Loading
 from magshell.model.loads import Force
 from magshell.model.supports import resolve
+from magshell.shell import body as shell_body
 from magshell.shell import geometry
 from magshell.shell.elements import PAPER, QUADRATIC, ElementType
 from magshell.shell.elements.definition import Rule, gauss
@@ -93,11 +94,11 @@ def assumed_values(wanted: bool) -> Iterator[None]:
         return full._replace(u=bilinear(low.u), director=director, phi=bilinear(low.phi), rotation=rotation)
 
     if wanted:
-        assembly.interpolation = assumed
+        shell_body.interpolation = assumed
     try:
         yield
     finally:
-        assembly.interpolation = original
+        shell_body.interpolation = original
 
 
 # -- zero modes ------------------------------------------------------------------------------------------------------
@@ -134,7 +135,7 @@ def stiffness(mesh: Mesh, element: ElementType, length_scale: float = 0.1) -> np
     )  # fmt: skip
     discretisation = Discretisation(body, lambda graph: np.arange(graph.shape[0]))
     matrix = discretisation.assemble(
-        discretisation.undeformed(), Loading(np.zeros(3), np.zeros(0), np.zeros((len(mesh.points), 10)))
+        Instant(discretisation.undeformed(), Loading(np.zeros(3), np.zeros(0), np.zeros((len(mesh.points), 10))))
     ).matrix
     return 0.5 * (matrix.toarray() + matrix.toarray().T)
 

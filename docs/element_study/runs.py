@@ -101,10 +101,8 @@ class Store:
 def _digest() -> str:
     """Of every source that a solve is made of."""
     package = ROOT / "src" / "magshell"
-    folders = (
-        "shell", "materials", "magnetics", "mesh", "model", "equations", "evaluation", "linalg", "solver",
-        "problem/examples",
-    )  # fmt: skip
+    folders = ("shell", "materials", "magnetics", "mesh", "model", "equations", "evaluation", "linalg", "solver")
+    folders += ("problem/examples",)
     files = [file for folder in folders for file in (package / folder).rglob("*") if file.suffix in (".py", ".toml")]
     files += [file for file in package.glob("*.py") if file.name not in ("__main__.py", "cli.py", "progress.py")]
     digest = hashlib.sha256()
@@ -138,7 +136,7 @@ def _settle(path: Path, free: ms.Model, clock: Clock) -> None:
     """Replace the last step of a path by the equilibrium of another model that starts from it."""
     discretisation, last = Discretisation(free, nested_dissection), path.steps[-1]
     system = System(discretisation, make_solver("superlu"), free.course(0), path.settings)
-    start = Trial(last.state, 1.0, discretisation.stresses_at(last.state))
+    start = Trial(last.state, 1.0, discretisation.predicted(last.state))
     solution = newton(system, start, None, lambda *_: None)
     path.steps[-1] = last._replace(state=solution.trial.state)
     path.discretisation = discretisation

@@ -11,6 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import magshell as ms
+from magshell.evaluation.converged import converged
 from magshell.output.bodies import Body, shifted, step_at
 from magshell.output.panels import colour_bar, colour_scale, draw_sequence
 from magshell.output.setup import draw_setup
@@ -65,7 +66,7 @@ in_bud = ms.remanence.placed(shell.remanence, shell.mesh, shell.mesh.points[shel
 fields, angles = [], []
 print("field (mT)   angle (deg)   distance from the bud (mm)")
 for step in path.steps:
-    director = path.discretisation.nodal_director(step.state)[tip]
+    director = converged(path.discretisation, step).director()[tip]
     fields.append(1e3 * np.linalg.norm(step.flux_density))
     angles.append(np.degrees(np.arctan2(-director[0], director[2])))
     distance = 1e3 * np.linalg.norm(shell.mesh.points[tip] + step.state.u[tip] - in_bud)

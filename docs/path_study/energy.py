@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import magshell as ms
+from magshell.evaluation.converged import converged
 from magshell.output.style import COLOURS, PALE
 from path_study.page import LEGEND, Findings, dress, figure, table
 from path_study.runs import Runs
@@ -39,7 +40,7 @@ def balance(path: ms.Path) -> dict[str, float]:
     The forces are λ F, with the load factor λ and constant F: the work is ∫ λ F·du. Integrated by parts it is
     λ F·u - ∫ F·u dλ at the end, where F·u is a function of λ known at equal distances, as Simpson's rule needs it.
     """
-    forces = path.discretisation.external.forces(path.steps[0].state, np.ones(len(path.model.loads)))[:, :3]
+    forces = path.discretisation.loads.forces(path.steps[0].state, np.ones(len(path.model.loads)))[:, :3]
     load = np.array([step.load_factor for step in path.steps])
     moved = np.array([float(np.vdot(forces, step.state.u)) for step in path.steps])
     wanted = np.linspace(0.0, 1.0, len(path.courses[0].stops()) + 1)
@@ -49,7 +50,7 @@ def balance(path: ms.Path) -> dict[str, float]:
     weights = np.ones(len(at))
     weights[1:-1:2], weights[2:-1:2] = 4.0, 2.0
     simpson = moved[-1] - float(weights @ moved) / (3.0 * (len(at) - 1))
-    energy = float(path.discretisation.element_energy(path.steps[-1].state).sum())
+    energy = float(converged(path.discretisation, path.steps[-1]).energies[:, 0].sum())
     return {"trapezoid": float(trapezoid), "simpson": simpson, "energy": energy}
 
 

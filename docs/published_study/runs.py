@@ -97,7 +97,7 @@ def solved(published: Published, model: ms.Model) -> Run:
 
 def _largest_strain(path: ms.Path) -> float:
     """Of all Green strains at the points of the last state, in size."""
-    F = evaluate(path.discretisation.body, path.steps[-1].state).F
+    F = evaluate(path.discretisation.reference, path.steps[-1].state).F
     E = 0.5 * (np.einsum("epkia,epkib->epkab", F, F) - np.eye(3))
     return float(np.abs(np.linalg.eigvalsh(E)).max())
 

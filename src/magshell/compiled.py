@@ -8,7 +8,6 @@ import os
 import pathlib
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from functools import cached_property
 from typing import Any, TypeVar
 
 import numba
@@ -120,19 +119,21 @@ class Callback(_Kept):
         kinds = {"p": numba.types.CPointer(numba.float64), "d": numba.float64}
         self._signature = tuple(kinds[letter] for letter in signature), numba.float64
         self.shown = f"the law {owner.__name__}"
+        self._compiled: CFunc | None = None  # the code lives as long as this object
 
-    @cached_property
+    @property
     def address(self) -> int:
         """Address of the machine code in this process; the first use compiles it or reads it from the cache."""
-        with self._one_process():
-            made: Any = CFunc(self._function, self._signature, locals={}, options=dict(_LAW_OPTIONS))
-            made._cache = self._store()
-            made.compile()
-            self._keep = made  # the code lives as long as this object
-            return int(made.address)
+        if self._compiled is None:
+            with self._one_process():
+                made = CFunc(self._function, self._signature, locals={}, options=dict(_LAW_OPTIONS))
+                made._cache = self._store()
+                made.compile()
+                self._compiled = made
+        return int(self._compiled.address)
 
     def _store(self) -> Store:
-        folder = _cache_folder(f"laws/{self._owner.__module__}.{self._owner.__name__}", *self._sources)
+        folder = _cache_folder(f"law-{self._owner.__module__}.{self._owner.__name__}", *self._sources)
         return Store(folder, self._owner.__name__, self.shown)
 
 

@@ -136,7 +136,7 @@ class Store:
     Parameters
     ----------
     folder : pathlib.Path or None
-        Of this version of the sources; it may be one that cannot be written. None: nothing is kept.
+        Of this version of the sources, in the cache; it may be one that cannot be written. None: nothing is kept.
     name : str
         Of the function.
     shown : str
@@ -172,7 +172,7 @@ class Store:
             write_atomically(file, _CHECKSUM(payload).digest() + payload)
         except OSError as error:
             _warn_once(
-                f"{self.folder}: compiled kernels cannot be kept there ({error.strerror or error}); "
+                f"{self.folder.parent}: compiled kernels cannot be kept there ({error.strerror or error}); "
                 "they are compiled anew in each run"
             )
 
@@ -194,7 +194,7 @@ class Store:
             return pickle.loads(payload)
         with contextlib.suppress(OSError):
             file.unlink()
-        _warn_once(f"{self.folder}: compiled kernels there are damaged; they are compiled anew")
+        _warn_once(f"{self.folder.parent}: compiled kernels there are damaged; they are compiled anew")
         return None
 
     def _file(self, folder: pathlib.Path, signature: Any, codegen: Any) -> pathlib.Path:

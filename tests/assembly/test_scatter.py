@@ -18,6 +18,7 @@ from battery import (
 )
 from shell import oracle
 
+from magshell.equations.instant import Instant
 from magshell.linalg import nested_dissection
 from magshell.model.supports import Clamp, Prescribe, SymmetryPlane
 
@@ -93,10 +94,10 @@ def test_matrix_and_right_side(reference, supports, ordering):
     d = supported(body, supports, ordering)
     if supports:
         assert (d.model.constraints.frame_of >= 0).any()
-    assembly = d.assemble(state, d.model.loading(1.0))
+    assembly = d.assemble(Instant(state, d.model.loading(1.0)))
     (r, r_condensed, K), free = expected(d, arrays), d.free.ravel()
     right_side = np.zeros(free.size)
-    right_side[free] = assembly.right_side[d.equations.number[d.free]]
+    right_side[free] = assembly.right_side[d.numbering.number[d.free]]
     errors = {
         "residual": scaled_error(assembly.residual.ravel(), r),
         "right side": scaled_error(right_side, np.where(free, -r_condensed, 0.0)),
@@ -117,7 +118,9 @@ def test_imposed_increments_go_to_the_right_side(reference):
     (_, r_condensed, K), imposed = expected(d, arrays), d.imposed(0.7 * d.model.constraints.values[0])
     assert np.array_equal(imposed, 0.7 * d.model.constraints.values[0])
     assert np.count_nonzero(imposed) > 10
-    right_side = d.assemble(state, d.model.loading(1.0), imposed=imposed).right_side[d.equations.number[d.free]]
+    right_side = d.assemble(Instant(state, d.model.loading(1.0)), imposed=imposed).right_side[
+        d.numbering.number[d.free]
+    ]
     error = scaled_error(right_side, -(r_condensed + K @ imposed.ravel())[d.free.ravel()])
     assert error < 1e-11, f"{error:.1e}"
 
@@ -126,9 +129,9 @@ def test_solution_satisfies_the_equations(reference):
     """The increment of free unknowns and imposed values balances K Δv = -r but for reactions."""
     body, state, arrays = reference
     d = supported(body)
-    assembly = d.assemble(state, d.model.loading(1.0), imposed=d.imposed(0.1 * d.model.constraints.values[0]))
+    assembly = d.assemble(Instant(state, d.model.loading(1.0)), imposed=d.imposed(0.1 * d.model.constraints.values[0]))
     solution = np.linalg.solve(assembly.matrix.toarray(), assembly.right_side)
-    local = frames(d) @ d.expand(solution, d.imposed(0.1 * d.model.constraints.values[0])).ravel()
+    local = frames(d) @ d.direction(solution, d.imposed(0.1 * d.model.constraints.values[0])).nodal.ravel()
     _, r_condensed, K = expected(d, arrays)
     unbalanced = K @ local + r_condensed
     error = np.abs(unbalanced[d.free.ravel()]).max() / np.abs(unbalanced).max()
@@ -142,11 +145,11 @@ def test_pattern_holds_no_more_than_neighbours(element):
     """Two unknowns share an entry if and only if an element has both of their nodes."""
     d = free_body(patch((3, 2)), element=element, supports=(Clamp("left"),), ordering=ORDERINGS["at random"])
     owner = np.empty(d.dofs, dtype=int)
-    owner[d.equations.number[d.free]] = np.nonzero(d.free)[0]
+    owner[d.numbering.number[d.free]] = np.nonzero(d.free)[0]
     neighbours = np.zeros((len(d.mesh.points),) * 2, dtype=bool)
     for nodes in d.mesh.elements:
         neighbours[np.ix_(nodes, nodes)] = True
-    matrix = d.assemble(d.undeformed(), d.model.loading(0.0)).matrix
+    matrix = d.assemble(Instant(d.undeformed(), d.model.loading(0.0))).matrix
     stored = np.zeros(matrix.shape, dtype=bool)
     stored[matrix.indices, np.repeat(np.arange(d.dofs), np.diff(matrix.indptr))] = True
     assert matrix.has_canonical_format
@@ -164,21 +167,14 @@ def test_mid_sides_carry_what_the_element_type_says(element):
     assert d.dofs == 10 * len(d.mesh.corner_nodes) + extra * len(mid_sides)
 
 
-def test_a_mid_side_node_of_the_default_type_is_whole_when_all_it_carries_is_free():
-    """What the quick way of scattering needs to know: components that no node of a kind carries are not missed."""
-    d = free_body(patch((3, 2)), supports=(Clamp("left"),))
-    held = np.zeros(len(d.mesh.points), dtype=bool)
-    held[d.mesh.nodes_of("left")] = True
-    assert np.array_equal(d.equations.whole, ~held)
-
-
 def test_frames_there_and_back():
     d = free_body(PATCHES["curved patch"](), supports=SUPPORTS)
-    increment, _ = random_increment(d, 5)
+    whole = random_increment(d, 5)
+    increment = whole.nodal
     error = np.abs(d.to_global(d.to_frames(increment)) - increment).max()
     assert error < 1e-15, f"{error:.1e}"
     assert np.abs(d.to_frames(increment).ravel() - frames(d) @ increment.ravel()).max() < 1e-15
-    held = d.to_frames(d.with_imposed(increment, 0.5 * d.model.constraints.values[0]))
+    held = d.to_frames(d.with_imposed(whole, 0.5 * d.model.constraints.values[0]).nodal)
     fixed = d.model.constraints.fixed
     assert held[fixed] == pytest.approx(0.5 * d.model.constraints.values[0][fixed], abs=1e-15)
     assert np.abs((held - d.to_frames(increment))[~fixed]).max() < 1e-15

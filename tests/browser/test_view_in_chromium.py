@@ -16,6 +16,7 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
+from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import OUTPUTS
 from magshell.output.page import shown_steps, write_page
 from magshell.output.page import steps as page_steps
@@ -253,7 +254,7 @@ def test_marks_and_outlines_can_be_shown_and_hidden(window):
 def test_numbers_of_the_page_are_those_of_the_path(window, path):
     """Sixteen bits between the least and the largest value of a step."""
     for name in ("displacement", "energy", "normal"):
-        values = np.asarray(OUTPUTS[name].evaluate(path.discretisation, path.steps[3].state)).reshape(
+        values = np.asarray(OUTPUTS[name].evaluate(converged(path.discretisation, path.steps[3]))).reshape(
             -1, OUTPUTS[name].components
         )
         script = "return JSON.stringify(quantities.get(given[0]).columns(3).map(column => [...column]))"

@@ -8,6 +8,7 @@ import numpy as np
 
 import magshell as ms
 from magshell.equations.discretisation import Discretisation
+from magshell.equations.instant import Instant
 from magshell.linalg import make_solver, nested_dissection
 
 MU, SMALL = 1.0, 1e-6
@@ -30,8 +31,8 @@ def respond(model: ms.Model) -> Response:
     """The response of a model whose load at load factor 1 is small: its own stiffness is left out."""
     d = Discretisation(model, nested_dissection)
     start = d.undeformed()
-    right_side = d.assemble(start, d.model.loading(1.0)).right_side
-    matrix = d.assemble(start, d.model.loading(0.0)).matrix
+    right_side = d.assemble(Instant(start, d.model.loading(1.0))).right_side
+    matrix = d.assemble(Instant(start, d.model.loading(0.0))).matrix
     assert matrix is not None
     solution = make_solver("superlu").factorise(matrix).solve(right_side)
-    return Response(d, d.expand(solution), 0.5 * float(right_side @ solution))
+    return Response(d, d.direction(solution).nodal, 0.5 * float(right_side @ solution))

@@ -14,6 +14,7 @@ import scipy.linalg
 import magshell as ms
 from elements.linear import SMALL, respond, rubber
 from magshell.equations.discretisation import Discretisation
+from magshell.equations.instant import Instant
 from magshell.linalg import nested_dissection
 from magshell.mesh import Mesh, split
 from magshell.model.loads.distribution import nodal_areas
@@ -84,14 +85,14 @@ def frequencies(mesh: Mesh, thickness: float = 0.02) -> np.ndarray:
     """The twenty lowest, times a constant, of masses at the nodes' displacements."""
     shell = ms.Shell(mesh, thickness, rubber(0.3, thickness))
     d = Discretisation(ms.Model(shell, [ms.Clamp("left")], loads=[ms.Force("right", (0, 0, SMALL))]), nested_dissection)
-    matrix = d.assemble(d.undeformed(), d.model.loading(0.0)).matrix
+    matrix = d.assemble(Instant(d.undeformed(), d.model.loading(0.0))).matrix
     assert matrix is not None
     K, mass = matrix.toarray(), np.zeros(d.dofs)
     areas = nodal_areas(shell, np.arange(len(mesh.elements)))
     assert areas.min() > 0.0
     for column in range(3):
         free = d.free[:, column]
-        mass[d.equations.number[free, column]] = areas[free]
+        mass[d.numbering.number[free, column]] = areas[free]
     light = np.flatnonzero(mass == 0.0)
     heavy = np.flatnonzero(mass)
     eliminated = np.linalg.solve(K[np.ix_(light, light)], K[np.ix_(light, heavy)])

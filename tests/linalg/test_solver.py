@@ -10,6 +10,7 @@ import pytest
 import scipy.sparse as sp
 from battery import MATERIAL, PATCHES, example, free_body, patch, random_state
 
+from magshell.equations.instant import Instant
 from magshell.errors import InputError
 from magshell.linalg import SOLVERS, SingularMatrix, make_solver, nested_dissection
 from magshell.linalg.factorisation import scaled
@@ -53,7 +54,7 @@ def test_badly_scaled_shell_matrix(name):
 def test_unsymmetric_matrix_is_not_transposed(name):
     """The couple's tangent at a random state, solved against NumPy."""
     d = free_body(PATCHES["curved patch"](), supports=(Clamp("left"),), ordering=nested_dissection)
-    matrix = d.assemble(random_state(d, 1), d.model.loading(1.0)).matrix
+    matrix = d.assemble(Instant(random_state(d, 1), d.model.loading(1.0))).matrix
     dense = matrix.toarray()
     assert np.abs(dense - dense.T).max() > 1e-3
     factors = solver_or_skip(name).factorise(matrix)
@@ -71,7 +72,7 @@ def test_factors_are_values(name):
     solver = solver_or_skip(name)
     right_side, made = np.ones(d.dofs), []
     for seed in (1, 2, 3):
-        matrix = d.assemble(random_state(d, seed), d.model.loading(1.0)).matrix
+        matrix = d.assemble(Instant(random_state(d, seed), d.model.loading(1.0))).matrix
         made.append((matrix.copy(), solver.factorise(matrix)))
     assert solver.factorisations == 3
     for matrix, factors in made:
@@ -92,12 +93,12 @@ def equal_rows():
 def free_matrix(supports):
     mesh = patch((3, 3), distortion=0.25, keep_boundary=True)
     d = free_body(mesh, supports=supports, ordering=nested_dissection)
-    return d.assemble(d.undeformed(), d.model.loading(0.0)).matrix
+    return d.assemble(Instant(d.undeformed(), d.model.loading(0.0))).matrix
 
 
 def thin_matrix(supports):
     d = thin_strip(supports)
-    return d.assemble(d.undeformed(), d.model.loading(0.0)).matrix
+    return d.assemble(Instant(d.undeformed(), d.model.loading(0.0))).matrix
 
 
 SINGULAR = {

@@ -8,6 +8,7 @@ from battery import with_points
 from scipy.optimize import brentq
 
 import magshell as ms
+from magshell.equations.instant import Instant
 from magshell.mesh import Mesh
 from magshell.shell.elements import PAPER, QUADRATIC
 
@@ -83,7 +84,7 @@ def square(supports, pressure):
 
 def skew(path):
     """Largest entry of K - Kᵀ over that of K at the end of a path."""
-    assembly = path.discretisation.assemble(path.steps[-1].state, path.model.loading(1.0))
+    assembly = path.discretisation.assemble(Instant(path.steps[-1].state, path.model.loading(1.0)))
     K = assembly.matrix.toarray()
     return np.abs(K - K.T).max() / np.abs(K).max()
 

@@ -16,6 +16,7 @@ import magshell as ms
 from loads.bodies import arm, grouped
 from magshell import Settings, solve
 from magshell.equations.discretisation import Discretisation
+from magshell.equations.instant import Instant
 from magshell.linalg import make_solver, nested_dissection
 from magshell.model.supports import Condition
 from magshell.shell.state import State
@@ -78,7 +79,7 @@ def test_tangent_of_the_rotations_under_a_couple(held: list[object], follower: b
     discretisation, state = path.discretisation, path.steps[-1].state
     tip, step = int(np.argmin(np.linalg.norm(mesh.points - (LENGTH, 0, 0), axis=1))), 1e-6
 
-    matrix = discretisation.assemble(state, model.loading(1.0)).matrix.toarray()
+    matrix = discretisation.assemble(Instant(state, model.loading(1.0))).matrix.toarray()
     scale = np.sqrt(np.abs(matrix.diagonal()))
     equations = equation_numbers(discretisation)[tip]
     rotations = equations[7:][equations[7:] >= 0]
@@ -86,7 +87,7 @@ def test_tangent_of_the_rotations_under_a_couple(held: list[object], follower: b
     for equation in rotations:
         unit = np.zeros(discretisation.dofs)
         unit[equation] = step
-        increment = discretisation.expand(unit)
+        increment = discretisation.direction(unit).nodal
         numeric = central_difference(discretisation, state, increment, step)
         off = np.abs(numeric - matrix[:, equation]) / (scale * scale[equation])
         assert off.max() < 1e-6, f"equation {equation}: {off.max():.1e} in equation {off.argmax()}"
@@ -99,9 +100,9 @@ class Recording(Discretisation):
         super().__init__(model, nested_dissection)
         self.states: list[State] = []
 
-    def assemble(self, state, *arguments, **options):
-        self.states.append(state)
-        return super().assemble(state, *arguments, **options)
+    def assemble(self, instant, *arguments, **options):
+        self.states.append(instant.state)
+        return super().assemble(instant, *arguments, **options)
 
 
 @cache
@@ -116,7 +117,7 @@ def errors(loads: str, ε: float) -> np.ndarray:
     """Distance of u from the solution before and after each of two iterations, m (root of the sum of squares)."""
     make, full = BENT[loads]
     discretisation, start = Recording(make(full)), converged(loads)
-    trial = Trial(start, BEGIN * (1 + ε), discretisation.stresses_at(start))
+    trial = Trial(start, BEGIN * (1 + ε), discretisation.predicted(start))
     settings = Settings(tolerance=SHARP, max_iterations=20)
     system = System(discretisation, make_solver("superlu"), discretisation.model.course(0), settings)
     newton(system, trial, None, lambda *_: None)

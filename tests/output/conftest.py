@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from magshell.evaluation.converged import Converged
 from magshell.magnetics.field import UniformField
 from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.materials import MicropolarNeoHookean
@@ -24,27 +25,48 @@ class FakeDiscretisation:
 
     def __init__(self, model, mesh):
         self.model, self.mesh, self.dofs = model, mesh, 7 * len(mesh.points)
-        self.body = SimpleNamespace(remanence=np.tile([0.0, 0.0, 80e-3], (len(mesh.elements), 4, 1)))
+        self.reference = SimpleNamespace(remanence=np.tile([0.0, 0.0, 80e-3], (len(mesh.elements), 4, 2, 1)))
         radial = mesh.points * [0, 1, 1]
         self.normals = radial / np.linalg.norm(radial, axis=1, keepdims=True)
 
-    def nodal_director(self, state):
-        return self.normals + state.w
 
-    def nodal_phi(self, state):
-        return state.phi
+class FakeConverged:
+    """What outputs are evaluated of, as formulas."""
 
-    def nodal_rotation(self, state):
-        return 2 * state.q[:, 1:]
+    def __init__(self, discretisation, state, loading):
+        self.discretisation, self.state, self.loading = discretisation, state, loading
+        self.mesh = discretisation.mesh
+        self._u = state.u[self.mesh.elements]
 
-    def element_remanence(self, state):
-        return np.tile([0.0, 0.0, 80e-3], (len(self.mesh.elements), 1))
+    def director(self):
+        return self.discretisation.normals + self.state.w
 
-    def element_thickness_ratio(self, state):
-        return 1 - 20 * np.abs(state.u[self.mesh.elements]).mean(axis=(1, 2))
+    def phi(self):
+        return self.state.phi
 
-    def element_energy(self, state):
-        return 1e-6 * np.abs(state.u[self.mesh.elements]).sum(axis=(1, 2))
+    def rotation(self):
+        return 2 * self.state.q[:, 1:]
+
+    def remanence(self):
+        return np.tile([0.0, 0.0, 80e-3], (len(self._u), 1))
+
+    def thickness_ratio(self):
+        return 1 - 20 * np.abs(self._u).mean(axis=(1, 2))
+
+    @property
+    def energies(self):
+        return np.column_stack([1e-6 * np.abs(self._u).sum(axis=(1, 2)), np.zeros(len(self._u))])
+
+
+@pytest.fixture(autouse=True)
+def formulas(monkeypatch):
+    """What has converged on a fake path is a fake, too."""
+
+    def made(discretisation, *reached):
+        fake = isinstance(discretisation, FakeDiscretisation)
+        return (FakeConverged if fake else Converged)(discretisation, *reached)
+
+    monkeypatch.setattr("magshell.evaluation.converged.Converged", made)
 
 
 class FakePath:
@@ -60,6 +82,7 @@ class FakePath:
             coupling=MicropolarCouple(),
             shell=SimpleNamespace(material=MicropolarNeoHookean(135e3, 3.25e6, 13.5e3, 9e-5), thickness=0.9e-3),
             probe_nodes={name: mesh.node_at(position) for name, position in probes.items()},
+            course=lambda stage: SimpleNamespace(at=lambda load_factor: None),
         )
         self.discretisation = FakeDiscretisation(self.model, mesh)
         self.critical_points, self.converged, self.reason = [], True, "the end of the path is reached"

@@ -22,7 +22,7 @@ def cross():
     first = discretisation.undeformed()
     lifted = first._replace(u=first.u + np.array([0.0, 0.0, 5e-3]))
     steps = [
-        SimpleNamespace(load_factor=load, state=state, flux_density=load * model.field.vector)
+        SimpleNamespace(stage=0, load_factor=load, state=state, flux_density=load * model.field.vector)
         for load, state in ((0.0, first), (1.0, lifted))
     ]
     return SimpleNamespace(model=model, discretisation=discretisation, steps=steps)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from faults.limits import bounded
 
+from magshell.equations.instant import Increment
 from magshell.errors import InputError
 from magshell.evaluation.balance import Balance
 from magshell.output import checkpoint
@@ -42,7 +43,7 @@ def waypoint(number: int = 7, plain: bool = False) -> Waypoint:
         number, random(), state(), 4, 1e-11, None if plain else balance, random(), 1, random(size=3), random(size=2),
         None if plain else 3,
     )  # fmt: skip
-    slope = Slope(random(size=(NODES, 10)), random(size=(ELEMENTS, 4, 3)), random())
+    slope = Slope(Increment(random(size=(NODES, 10)), random(size=(ELEMENTS, 4, 3))), random())
     return Waypoint(step, () if plain else (point, point), slope, 3, 2, True, random(), 5, 41, 1.25)
 
 

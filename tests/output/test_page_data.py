@@ -14,6 +14,7 @@ from conftest import FakePath
 
 from magshell.errors import InputError
 from magshell.evaluation import outputs
+from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import OUTPUTS, Output, find
 from magshell.materials import MicropolarMooneyRivlin, MicropolarNeoHookean, MicropolarStVenantKirchhoff
 from magshell.output.animation import draw_steps
@@ -95,7 +96,7 @@ def test_no_number_of_the_page_is_not_finite(path, monkeypatch):
     broken = np.linspace(0, 1, len(path.discretisation.mesh.elements))
     broken[::3] = np.nan
     monkeypatch.setitem(
-        outputs.OUTPUTS, "energy", Output("energy", "W", "J", "Broken.", "cell", 1, lambda d, state: broken)
+        outputs.OUTPUTS, "energy", Output("energy", "W", "J", "Broken.", "cell", 1, lambda reached: broken)
     )
     text = page(path)
     assert not re.search(r"\b(NaN|Infinity)\b", json.dumps(header(text)))
@@ -182,12 +183,12 @@ def test_wrong_colour_is_bad_input(path, tmp_path):
 
 def test_new_output_appears_everywhere(path, tmp_path, monkeypatch, can_draw):
     """One entry in the registry is all: files, menu of the page, colours of pictures."""
-    height = Output(
-        "height", "H", "m", "Height over the ground.", "point", 1, lambda d, state: d.mesh.points[:, 2] + state.u[:, 2]
-    )
+    over = lambda reached: reached.mesh.points[:, 2] + reached.state.u[:, 2]  # noqa: E731
+    height = Output("height", "H", "m", "Height over the ground.", "point", 1, over)
     monkeypatch.setitem(outputs.OUTPUTS, height.name, height)
     file = grid(path.discretisation, path.steps[-1])
-    np.testing.assert_array_equal(file.point_data["height"], height.evaluate(path.discretisation, path.steps[-1].state))
+    values = height.evaluate(converged(path.discretisation, path.steps[-1]))
+    np.testing.assert_array_equal(file.point_data["height"], values)
     text = page(path, color="H")
     assert header(text)["colour"] == "height 0"
     about = header(text)["outputs"][-1]
@@ -210,5 +211,5 @@ def test_problem_is_described_in_words(path, law, words):
     said = dict(facts(path, path.steps))
     assert said["material"] == f"{words}, shear modulus 135 kPa"
     assert (said["thickness"], said["remanence"]) == ("0.9 mm", "up to 80 mT")
-    path.discretisation.body.remanence = 0 * path.discretisation.body.remanence
+    path.discretisation.reference.remanence = 0 * path.discretisation.reference.remanence
     assert dict(facts(path, path.steps))["remanence"] == "none"

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from magshell import Path, problem, solve
+from magshell.equations.instant import Instant
 from magshell.errors import InputError
 from magshell.problem.building import build
 from magshell.reproduction.catalogue import EXAMPLES, find
@@ -88,7 +89,7 @@ def test_heights_of_the_hollow_cross_are_free_of_where_it_is_held() -> None:
     apart = np.abs(u[mirrored][:, [1, 0, 2]] - u).max() / np.abs(u).max()
     assert apart < 1e-8, f"{apart:.1e}"
     residual = path.discretisation.assemble(
-        path.steps[-1].state, path.discretisation.model.loading(1.0), tangent=False
+        Instant(path.steps[-1].state, path.discretisation.model.loading(1.0)), tangent=False
     ).residual
     held = [path.model.probe_nodes[name] for name in ("A", "G")]
     others = np.abs(np.delete(residual[:, 2], held)).max()

@@ -6,8 +6,10 @@ import numpy as np
 
 from magshell.compiled import Kernel
 from magshell.shell import point
+from magshell.shell.bubble import hold_vector
+from magshell.shell.element import padded
 from magshell.shell.point import workspace
-from magshell.shell.section import section
+from magshell.shell.section import Request, section
 
 SIZE = point.SIZE
 _ORDER = {
@@ -33,20 +35,36 @@ def pack(parts, concatenate=np.concatenate):
 
 
 @Kernel
-def _section(material, couple_modulus, coupling, B, geometry, remanence, e, p, x, P, kappa, mixed, g, g_mixed, H):
-    return section(
-        material, couple_modulus, coupling, B, geometry, remanence, e, p, x, P, kappa, mixed, True,
-        workspace(), g, g_mixed, H,
-    )  # fmt: skip
+def _section(points, levels, laws, request, e, p, x, S, kappa, energy, g, H):
+    records = workspace()
+    w = records[0]
+    w.x[:] = x
+    least = section(w, points[e, p], levels[e, p], laws, request, S, kappa)
+    energy[:], g[:, :], H[:, :] = w.energy, w.g, w.H[:, : len(x)]
+    return least
 
 
-def gradient_and_hessian(d, e, p, x, B):
-    """Internal and magnetic gradient (31,) and the Hessian (31, 31) of the point p of element e."""
-    material, levels = d.model.shell.material, d.body.geometry.z.size
-    g, g_mixed, H = np.zeros((SIZE, 2)), np.zeros(SIZE), np.zeros((SIZE, SIZE))
-    determinant = _section(
-        material, material.couple_modulus, d.model.coupling, np.asarray(B, dtype=float), d.body.geometry,
-        d.body.remanence, e, p, x, np.zeros((levels, 3, 3)), np.zeros((2, 3)), False, g, g_mixed, H,
-    )  # fmt: skip
+def energy_gradient_and_hessian(d, e, p, x, B, body=None):
+    """Energies (2,) and gradients (31, 2), internal and magnetic, and the Hessian (31, 31) of the point p of element e.
+
+    `body` is the discretisation's unless given.
+    """
+    body = body or d.reference.body
+    request = Request(np.asarray(B, dtype=float), mixed=False, tangent=True)
+    energy, g, H = np.zeros(2), np.zeros((SIZE, 3)), np.zeros((SIZE, SIZE))
+    S, kappa = np.zeros((body.levels.shape[2], 3, 3)), np.zeros((2, 3))
+    determinant = _section(body.points, body.levels, body.laws, request, e, p, x, S, kappa, energy, g, H)
     assert determinant > 0.0, f"the test's state is inadmissible: det F = {determinant:.3g}"
-    return g[:, 0], g[:, 1], H
+    return energy, g[:, :2], H
+
+
+@Kernel
+def _hold(held, number, e, layout, v, alpha, vectors, r, K):
+    return hold_vector(held, number, e, layout, v, alpha, vectors, r, K)
+
+
+def held_energy(held, number, e, layout, alpha):
+    """Energy of a held vector (3,) of the undeformed element e."""
+    size = 3 * layout.u + 3 * layout.w + layout.phi + 3 * layout.q + 3 * layout.modes
+    v, r, K = np.zeros(size + layout.q), np.zeros((size, 2)), np.zeros((size, padded(size)))
+    return _hold(held, number, e, layout, v, np.asarray(alpha, dtype=float), np.zeros((4, 3)), r, K)

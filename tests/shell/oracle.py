@@ -287,7 +287,7 @@ def bubble_energy(d, state, e, at):
     a = tangents(d.mesh.points[nodes] + state.u[nodes] + at[:NODAL].reshape(8, 10)[:, :3])
     area, total = 4.0 * np.linalg.norm(np.cross(*A)), 0.0
     for number in range(1 + (shell.element.triangle_rule is not None)):
-        alpha = (state.alpha[e] + at[NODAL:].reshape(d.modes, 3))[-1 - number]
+        alpha = (state.alpha[e] + at[NODAL:].reshape(-1, 3))[-1 - number]
         held = np.linalg.pinv(A) @ (a @ alpha)
         total = total + 0.5 * mu * h * area * held @ held
         if number == 0 or not is_triangle(d.mesh.points[nodes]):
@@ -303,7 +303,7 @@ def turned(spin, q):
 
 def unknowns(d):
     """Number of an element's variables."""
-    return NODAL + 3 * d.modes
+    return NODAL + 3 * d.model.shell.element.vectors
 
 
 def element_parts(d, state, e, parent, at):
@@ -318,9 +318,9 @@ def element_parts(d, state, e, parent, at):
     q = np.array([turned(nodal[n, 7:], sign[n] * state.q[rest[n]]) for n in range(len(rest))])
     w_here, q_here = here.director @ w, here.rotation @ q
     enhanced = np.zeros((3, 3))
-    if d.modes:
+    if element.vectors:
         enhanced = enhancements(element, d.mesh.points[nodes], parent, here, centre) @ (
-            state.alpha[e] + at[NODAL:].reshape(d.modes, 3)
+            state.alpha[e] + at[NODAL:].reshape(-1, 3)
         )
     parts = {
         "du": here.u[1:] @ u + enhanced[:2],
@@ -336,7 +336,7 @@ def element_parts(d, state, e, parent, at):
 
 def point_of(d, here, e, weight, B):
     """The point of a surface; the remanence of the battery's bodies is constant within an element."""
-    return make_point(here.A, here.D, here.dD, weight, d.model.shell.thickness, d.body.remanence[e, 0], B)
+    return make_point(here.A, here.D, here.dD, weight, d.model.shell.thickness, d.reference.remanence[e, 0, 0], B)
 
 
 def element(d, state, e, B):
@@ -374,7 +374,7 @@ def stress_energy(d, state, e, dS, dκ):
 
 def condensed(d, r, K):
     """Residual and tangent after the elimination of α, and (K_αα⁻¹ r_α, K_αα⁻¹ K_αv)."""
-    v, a = slice(0, len(r) - 3 * d.modes), slice(len(r) - 3 * d.modes, None)
+    v, a = slice(0, len(r) - 3 * d.model.shell.element.vectors), slice(len(r) - 3 * d.model.shell.element.vectors, None)
     solved = np.linalg.solve(K[a, a], np.column_stack([r[a], K[a, v]]))
     return r[v] - K[v, a] @ solved[:, 0], K[v, v] - K[v, a] @ solved[:, 1:], solved[:, 0], solved[:, 1:]
 

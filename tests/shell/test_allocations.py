@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 from battery import (
     FIELD,
+    MATERIAL,
     REMANENCE,
     THICKNESS,
     TYPES,
     Unsupported,
     each_pair,
+    example,
     for_element,
     patch,
     random_increment,
@@ -23,12 +25,13 @@ from numba.core.runtime import _nrt_python, rtsys
 from solver.models import strip
 
 import magshell as ms
-from magshell.compiled import Kernel, inline
-from magshell.equations.discretisation import Discretisation, InvertedElement
-from magshell.magnetics.law import forces_of
-from magshell.materials.law import stresses_of
+from magshell.equations.discretisation import Discretisation
+from magshell.equations.instant import Instant
+from magshell.equations.term import InvertedElement
+from magshell.magnetics import law as coupling_laws
+from magshell.materials import law as material_laws
+from magshell.materials import neo_hookean
 from magshell.materials.tensors import inverse_transpose
-from magshell.shell.section import _forces_and_tangent, _stress_and_tangent
 
 
 @pytest.fixture(autouse=True)
@@ -59,21 +62,21 @@ def left_by(call, times=3):
 def calls(d):
     """Every use of a kernel, by name."""
     state, loading = random_state(d, 1, strain=1e-3), d.model.loading(0.1)
-    stresses, (increment, d_alpha) = d.stresses_at(state), random_increment(d, 1, 1e-3)
+    prediction, increment = d.predicted(state), random_increment(d, 1, 1e-3)
     inside_out = d.undeformed()._replace(w=-2.0 * d.normals)
 
     def inverted():
         with pytest.raises(InvertedElement):
-            d.assemble(inside_out, loading)
+            d.assemble(Instant(inside_out, loading))
 
     return {
-        "residual": lambda: d.assemble(state, loading, tangent=False),
-        "plain tangent": lambda: d.assemble(state, loading),
-        "mixed tangent": lambda: d.assemble(state, loading, stresses),
+        "residual": lambda: d.assemble(Instant(state, loading), tangent=False),
+        "plain tangent": lambda: d.assemble(Instant(state, loading)),
+        "mixed tangent": lambda: d.assemble(Instant(state, loading, prediction)),
         "a state that cannot be": inverted,
-        "enhancement": lambda: d.recover(increment),
-        "predicted stresses": lambda: d.predicted_stresses(state, increment, d_alpha),
-        "stresses of a state": lambda: d.stresses_at(state),
+        "enhancement": lambda: d.shell.recovered(increment.nodal, whole=True),
+        "predicted stresses": lambda: d.predicted(state, increment),
+        "stresses of a state": lambda: d.predicted(state),
     }
 
 
@@ -104,14 +107,6 @@ def test_nor_does_a_whole_solve():
 # -- laws of users ---------------------------------------------------------------------------------------------------
 
 
-class AllocatingMaterial(NamedTuple):
-    shear_modulus: float = 1.0
-
-
-class AllocatingCoupling(NamedTuple):
-    strength: float = 1.0
-
-
 @numba.njit
 def _doubled(values):
     result = np.empty(3)
@@ -128,32 +123,59 @@ def _stress(material, U, P, C):
         for j in range(3):
             work[i, j] += row[j]
             P[i, j] = work.T[j, i]
+    return work.sum()
 
 
-def _forces(coupling, m, n, B, f, c, K_m, K_ω):
+def _forces(coupling, m, n, B, gradients, forces, tangent):
     total = np.zeros(3)
     view = total[1:]
     for i in range(2):
         view[i] = _doubled(m)[i]
-        f[i] = total[i]
+        forces[i] += total[i]
+    return total.sum()
 
 
-@inline
-def _laws(material, coupling, U, P, C, f):
-    _stress_and_tangent(material, U, P, C)
-    _forces_and_tangent(coupling, U[0], U[1], U[2], f, f, P, P)
-
-
-@Kernel
-def _many_points(material, coupling, U, P, C, f):
-    for _ in range(100):
-        _laws(material, coupling, U, P, C, f)
-
-
-def test_laws_may_allocate(monkeypatch):
+def test_laws_may_allocate(registry):
     """Called as the sections call them: by functions that are compiled without counting references."""
-    monkeypatch.setitem(stresses_of, AllocatingMaterial, _stress)
-    monkeypatch.setitem(forces_of, AllocatingCoupling, _forces)
-    U = np.eye(3) + 0.1 * np.arange(9.0).reshape(3, 3)
-    P, C, f = np.zeros((3, 3)), np.zeros((3, 3, 3, 3)), np.zeros(3)
-    assert left_by(lambda: _many_points(AllocatingMaterial(), AllocatingCoupling(), U, P, C, f)) == 0
+
+    @material_laws.material_law(_stress)
+    class AllocatingMaterial(NamedTuple):
+        shear_modulus: float = 1.0
+
+    @coupling_laws.coupling_law(_forces, has_energy=True)
+    class AllocatingCoupling(NamedTuple):
+        strength: float = 1.0
+
+    U, B = np.tile(np.eye(3) + 0.1 * np.arange(9.0).reshape(3, 3), (100, 1, 1)), np.ones(3)
+    assert left_by(lambda: material_laws.evaluate(AllocatingMaterial(), U)) == 0
+    assert left_by(lambda: coupling_laws.evaluate(AllocatingCoupling(), U[:, 0], U[:, 1], B)) == 0
+    assert np.allclose(material_laws.evaluate(AllocatingMaterial(), U)[1], 2.0 * np.linalg.inv(U).swapaxes(-1, -2))
+
+
+def test_nor_does_a_solve_with_laws_that_allocate(registry):
+    @material_laws.material_law(_neo_hookean)
+    class Copying(MATERIAL):
+        """The neo-Hookean law, of a copy of the stretch."""
+
+    @coupling_laws.coupling_law(_energy, has_energy=True)
+    class CopyingEnergy(NamedTuple):
+        vacuum_permeability: float = 4e-7 * np.pi
+
+    d = body(Copying(**PARAMETERS_OF_NEO_HOOKE), CopyingEnergy(0.8), TYPES["quadratic"])
+    left = {name: left_by(call) for name, call in calls(d).items()}
+    assert not any(left.values()), f"{left}"
+
+
+PARAMETERS_OF_NEO_HOOKE = example(MATERIAL)._asdict()
+_law = numba.extending.register_jitable(neo_hookean._law)
+
+
+def _neo_hookean(material, U, P, C):
+    return _law(material, U.copy(), P, C)
+
+
+def _energy(coupling, m, n, B, gradients, forces, tangent):
+    copied = B.copy() / coupling.vacuum_permeability
+    for i in range(3):
+        forces[i] -= copied[i]
+    return -np.dot(m.copy(), copied)

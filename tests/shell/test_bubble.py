@@ -9,10 +9,12 @@ import numpy as np
 import pytest
 
 from magshell.mesh import rectangle
-from magshell.shell.bubble import held_energy, hold
+from magshell.shell.bubble import hold
+from magshell.shell.element import Layout
 from magshell.shell.elements import ELEMENTS
 from magshell.shell.geometry import interpolation
 from magshell.shell.shape_functions import bubble, gauss_legendre
+from shell.kernel_access import held_energy
 
 THEORY = (pathlib.Path(__file__).parents[2] / "docs" / "theory.md").read_text()
 
@@ -24,8 +26,9 @@ def test_the_hold_over_full_integration():
     X = square.points[square.elements]
     shape = interpolation(X, np.broadcast_to([0.0, 0.0, 1.0], X.shape), element, micro_rotation=True)
     amplitude = (shape.enhancement[0, :, :2, -1] / bubble(element.rule.points)[1])[0, 0]
-    held = hold(X, element, thickness, shear_modulus)
-    of_hold = held_energy(held, np.zeros_like(X), np.array([[[1.0, 0.0, 0.0]]]))[0]
+    held = hold(X, element, np.full(1, thickness), np.full(1, shear_modulus))
+    layout = Layout(8, element.rest_nodes, element.stretch_nodes, element.rest_nodes, element.vectors)
+    of_hold = held_energy(held, 0, 0, layout, (1.0, 0.0, 0.0))
 
     (xi, eta), weights = gauss_legendre(3)[0].T, gauss_legendre(3)[1]
     # The combination 3 ξ²η² - ξ² - η² with the coefficient of ξ²η² that the bubble has.

@@ -15,9 +15,11 @@ from battery import (
     random_increment,
     random_state,
     scaled_error,
+    strain_energy,
 )
 
 from magshell import magnetics
+from magshell.equations.instant import Instant
 from shell import oracle
 
 # Round-off of some 10⁴ products and of the condensation's division, which costs the condition number of K_αα (10–100).
@@ -44,28 +46,28 @@ def in_order(d, values):
 def test_energy_residual_tangent_and_condensation(element, material, coupling, seed):
     d = free_body(SINGLES["curved"](), material, coupling, element=element)
     state = random_state(d, seed)
-    assembly = d.assemble(state, d.model.loading(1.0))
+    assembly = d.assemble(Instant(state, d.model.loading(1.0)))
     energy, r, K = reference(d, state)
     r_condensed, K_condensed, offset, gain = oracle.condensed(d, r, K)
     right_side = np.zeros(d.free.size)
-    right_side[d.free.ravel()] = assembly.right_side[d.equations.number[d.free]]
-    increment, _ = random_increment(d, seed)
+    right_side[d.free.ravel()] = assembly.right_side[d.numbering.number[d.free]]
+    increment = random_increment(d, seed).nodal
     d_alpha = -offset - gain @ increment.ravel()
     errors = {
-        "energy": abs(d.element_energy(state)[0] / energy - 1.0),
+        "energy": abs(strain_energy(d, state)[0] / energy - 1.0),
         "residual": scaled_error(assembly.residual.ravel(), r[: d.free.size]),
         "right side": scaled_error(right_side, -r_condensed),
         "tangent": scaled_error(dense(d, assembly.matrix), K_condensed),
     }
-    if d.modes:
-        errors["recovered α"] = scaled_error(d.recover(increment).ravel(), d_alpha)
+    if element.vectors:
+        errors["recovered α"] = scaled_error(d.shell.recovered(increment, whole=True).ravel(), d_alpha)
     assert max(errors.values()) < TOLERANCE, errors
 
 
 @each_combination
 def test_tangent_is_symmetric_exactly_for_conservative_laws(element, material, coupling):
     d = free_body(SINGLES["curved"](), material, coupling, element=element)
-    K = dense(d, d.assemble(random_state(d, 3), d.model.loading(1.0)).matrix)
+    K = dense(d, d.assemble(Instant(random_state(d, 3), d.model.loading(1.0))).matrix)
     asymmetry = scaled_error(K, K.T)
     if magnetics.is_conservative(coupling):
         assert asymmetry < 1e-12, f"asymmetry {asymmetry:.1e}"
@@ -77,9 +79,9 @@ def test_tangent_is_symmetric_exactly_for_conservative_laws(element, material, c
 def test_mixed_tangent_with_the_states_own_stresses_is_the_plain_one(element, material, coupling):
     d = free_body(SINGLES["curved"](), material, coupling, element=element)
     state = random_state(d, 4)
-    own = d.assemble(state, d.model.loading(1.0))
+    own = d.assemble(Instant(state, d.model.loading(1.0)))
     plain, right_side = dense(d, own.matrix), own.right_side
-    mixed = d.assemble(state, d.model.loading(1.0), d.stresses_at(state))
+    mixed = d.assemble(Instant(state, d.model.loading(1.0), d.predicted(state)))
     errors = scaled_error(dense(d, mixed.matrix), plain), scaled_error(mixed.right_side, right_side)
     assert max(errors) < 1e-13, f"tangent {errors[0]:.1e}, right side {errors[1]:.1e}"
 
@@ -88,9 +90,9 @@ def test_mixed_tangent_with_the_states_own_stresses_is_the_plain_one(element, ma
 def test_mixed_tangent_with_other_stresses_keeps_the_residual(coupling):
     d = free_body(SINGLES["curved"](), coupling=coupling)
     state, other = random_state(d, 4), random_state(d, 5)
-    plain = d.assemble(state, d.model.loading(1.0))
+    plain = d.assemble(Instant(state, d.model.loading(1.0)))
     K, residual = dense(d, plain.matrix), plain.residual
-    mixed = d.assemble(state, d.model.loading(1.0), d.stresses_at(other))
+    mixed = d.assemble(Instant(state, d.model.loading(1.0), d.predicted(other)))
     assert np.array_equal(mixed.residual, residual)
     change = scaled_error(dense(d, mixed.matrix), K)
     assert change > 1e-3, f"the tangent changes by {change:.1e}: the given stresses are not used"
@@ -102,10 +104,10 @@ def test_mixed_tangent_is_that_of_an_energy_with_the_given_stresses(material, se
     """S being symmetric (η = 0): of W + ½ (S' - S) : UᵀU + mu l² (κ' - κ) · κ with fixed S', κ'."""
     d = free_body(SINGLES["curved"](), material._replace(coupling_modulus=0.0))
     state = random_state(d, seed)
-    own, given = d.stresses_at(state), d.stresses_at(random_state(d, seed + 10))
+    own, given = d.predicted(state), d.predicted(random_state(d, seed + 10))
     dS, dκ = (given.S - own.S)[0], (given.kappa - own.kappa)[0]
     assert scaled_error(dS.ravel(), dS.swapaxes(-1, -2).ravel()) < 1e-12
-    assembly = d.assemble(state, d.model.loading(1.0), given)
+    assembly = d.assemble(Instant(state, d.model.loading(1.0), given))
     _, r, K = reference(d, state)
     K_condensed = oracle.condensed(d, r, K + in_order(d, oracle.stress_energy(d, state, 0, dS, dκ).hessian))[1]
     error = scaled_error(dense(d, assembly.matrix), K_condensed)
@@ -115,7 +117,7 @@ def test_mixed_tangent_is_that_of_an_energy_with_the_given_stresses(material, se
 @each_material
 def test_mixed_tangent_is_symmetric_with_a_coupling_modulus_too(material):
     d = free_body(SINGLES["curved"](), material, magnetics.DeformationGradientEnergy(0.8))
-    K = dense(d, d.assemble(random_state(d, 4), d.model.loading(1.0), d.stresses_at(random_state(d, 5))).matrix)
+    K = dense(d, d.assemble(Instant(random_state(d, 4), d.model.loading(1.0), d.predicted(random_state(d, 5)))).matrix)
     asymmetry = scaled_error(K, K.T)
     assert asymmetry < 1e-12, f"asymmetry {asymmetry:.1e}"
 
@@ -124,8 +126,8 @@ def test_mixed_tangent_is_symmetric_with_a_coupling_modulus_too(material):
 def test_residual_alone_is_the_same(material):
     d = free_body(SINGLES["curved"](), material)
     state = random_state(d, 4)
-    with_tangent = d.assemble(state, d.model.loading(1.0)).residual
-    alone = d.assemble(state, d.model.loading(1.0), tangent=False)
+    with_tangent = d.assemble(Instant(state, d.model.loading(1.0))).residual
+    alone = d.assemble(Instant(state, d.model.loading(1.0)), tangent=False)
     assert alone.matrix is None
     assert np.array_equal(alone.residual, with_tangent)
 
@@ -133,10 +135,10 @@ def test_residual_alone_is_the_same(material):
 @each_combination
 def test_predicted_stresses_are_the_derivative_of_the_stresses(element, material, coupling):
     d = free_body(SINGLES["curved"](), material, coupling, element=element)
-    state, (increment, d_alpha) = random_state(d, 6), random_increment(d, 6)
-    variation = np.concatenate([increment[d.mesh.elements[0]].ravel(), d_alpha[0].ravel()])
+    state, increment = random_state(d, 6), random_increment(d, 6)
+    variation = np.concatenate([increment.nodal[d.mesh.elements[0]].ravel(), increment.alpha[0].ravel()])
     S, κ, dS, dκ = oracle.stresses(d, state, 0, variation)
-    own, predicted = d.stresses_at(state), d.predicted_stresses(state, increment, d_alpha)
+    own, predicted = d.predicted(state), d.predicted(state, increment)
     errors = {
         "S": scaled_error(own.S[0].ravel(), S.ravel()),
         "κ": scaled_error(own.kappa[0].ravel(), κ.ravel()),
@@ -150,9 +152,9 @@ def test_predicted_stresses_are_the_derivative_of_the_stresses(element, material
 def test_predicted_stresses_are_linear_in_the_increment(material):
     d = free_body(SINGLES["curved"](), material)
     state, one, other = random_state(d, 6), random_increment(d, 7), random_increment(d, 8)
-    own = d.stresses_at(state)
-    both = d.predicted_stresses(state, *(2.0 * a - 3.0 * b for a, b in zip(one, other, strict=True)))
-    first, second = d.predicted_stresses(state, *one), d.predicted_stresses(state, *other)
+    own = d.predicted(state)
+    both = d.predicted(state, 2.0 * one + -3.0 * other)
+    first, second = d.predicted(state, one), d.predicted(state, other)
     for name in ("S", "kappa"):
         start, a, b = (getattr(stresses, name).ravel() for stresses in (own, first, second))
         error = scaled_error(getattr(both, name).ravel() - start, 2.0 * (a - start) - 3.0 * (b - start))
@@ -163,8 +165,8 @@ def test_the_sign_of_a_nodes_quaternion_means_nothing():
     d = free_body(SINGLES["curved"]())
     state = random_state(d, 9)
     flipped = state._replace(q=state.q * np.where(np.arange(len(state.q)) % 3 == 0, -1.0, 1.0)[:, None])
-    first = d.assemble(state, d.model.loading(1.0))
+    first = d.assemble(Instant(state, d.model.loading(1.0)))
     residual, K = first.residual, dense(d, first.matrix)
-    second = d.assemble(flipped, d.model.loading(1.0))
+    second = d.assemble(Instant(flipped, d.model.loading(1.0)))
     errors = scaled_error(second.residual.ravel(), residual.ravel()), scaled_error(dense(d, second.matrix), K)
     assert max(errors) < 1e-14, errors

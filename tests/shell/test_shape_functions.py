@@ -82,9 +82,9 @@ def test_quadrature_is_exact_to_its_degree(count):
 def test_enhanced_modes_integrate_to_zero(mesh, element):
     """What a mode adds to F on flat elements, to g_3 on any: over the surface of every element, with its own area."""
     d = free_body(mesh, element=element)
-    assert d.body.shape.enhancement.shape[2:] == (3, element.vectors)
+    assert d.reference.shape.enhancement.shape[2:] == (3, element.vectors)
     of_triangles = element.triangle_rule is not None
-    modes, geometry = d.body.shape.enhancement[..., : len(element.modes) + of_triangles], d.body.geometry
+    modes, geometry = d.reference.shape.enhancement[..., : len(element.modes) + of_triangles], d.reference.geometry
     weights = element.integration(d.mesh.points[d.mesh.elements])[1]
     area = np.linalg.norm(np.cross(geometry.A[:, :, 0], geometry.A[:, :, 1]), axis=-1) * weights
     parts = [modes[:, :, 2]]

@@ -22,6 +22,7 @@ from battery import (
     patch,
 )
 
+from magshell.equations.instant import Instant
 from magshell.shell.elements import QUADRATIC, ElementType
 from magshell.shell.elements.definition import gauss
 
@@ -36,7 +37,7 @@ each_thickness = pytest.mark.parametrize(
 def spectrum(d):
     """Eigenvalues of the undeformed stiffness scaled to a diagonal of one, ascending; the stiffness and the scale."""
     free = d.free.ravel()
-    K = dense(d, d.assemble(d.undeformed(), d.model.loading(0.0)).matrix)[np.ix_(free, free)]
+    K = dense(d, d.assemble(Instant(d.undeformed(), d.model.loading(0.0))).matrix)[np.ix_(free, free)]
     scale = 1.0 / np.sqrt(np.diag(K))
     return np.linalg.eigvalsh(scale[:, None] * K * scale), K, scale
 

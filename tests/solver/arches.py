@@ -10,6 +10,7 @@ from battery import MATERIAL, example
 
 import magshell as ms
 from magshell import Model, Path, Stage
+from magshell.equations.instant import Instant
 from magshell.mesh import Mesh
 from magshell.model.course import Loading
 from magshell.shell.state import State
@@ -47,7 +48,7 @@ def to_the_crown_at(depth: float, **options: Any) -> Stage:
 
 def dense_tangent(path: Path, state: State, loading: Loading) -> np.ndarray:
     """Plain tangent (dofs, dofs) of a state."""
-    matrix = path.discretisation.assemble(state, loading).matrix
+    matrix = path.discretisation.assemble(Instant(state, loading)).matrix
     assert matrix is not None
     return matrix.toarray()
 

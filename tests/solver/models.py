@@ -10,6 +10,7 @@ import numpy as np
 import magshell as ms
 from magshell import Model, Observer, Path, Step
 from magshell.equations.discretisation import Discretisation
+from magshell.equations.instant import Instant
 from magshell.linalg import make_solver
 from magshell.shell.state import State
 
@@ -61,15 +62,15 @@ def contents(state: State) -> bytes:
 def last_correction(path: Path) -> float:
     """Largest change of u by one more Newton iteration, m: the error of the last state, to first order."""
     discretisation, step = path.discretisation, path.steps[-1]
-    assembly = discretisation.assemble(step.state, discretisation.model.loading(step.load_factor))
+    assembly = discretisation.assemble(Instant(step.state, discretisation.model.loading(step.load_factor)))
     assert assembly.matrix is not None
     factors = make_solver("superlu").factorise(assembly.matrix)
-    return float(np.abs(discretisation.expand(factors.solve(assembly.right_side))[:, :3]).max())
+    return float(np.abs(discretisation.direction(factors.solve(assembly.right_side)).nodal[:, :3]).max())
 
 
 def equation_numbers(discretisation: Discretisation) -> np.ndarray:
     """Equation of each nodal component, shape (nodes, 10); -1 where it is held or absent."""
-    return discretisation.expand(np.arange(1.0, discretisation.dofs + 1.0)).astype(int) - 1
+    return discretisation.direction(np.arange(1.0, discretisation.dofs + 1.0)).nodal.astype(int) - 1
 
 
 def central_difference(discretisation: Discretisation, state: State, increment: np.ndarray, step: float) -> np.ndarray:
@@ -79,9 +80,9 @@ def central_difference(discretisation: Discretisation, state: State, increment: 
     """
 
     def right_side(sign: float) -> np.ndarray:
-        discretisation.assemble(state, discretisation.model.loading(1.0))
-        moved = state.moved(sign * increment, discretisation.recover(sign * increment))
-        return discretisation.assemble(moved, discretisation.model.loading(1.0)).right_side
+        discretisation.assemble(Instant(state, discretisation.model.loading(1.0)))
+        moved = state.moved(sign * increment, discretisation.shell.recovered(sign * increment, whole=True))
+        return discretisation.assemble(Instant(moved, discretisation.model.loading(1.0))).right_side
 
     return (right_side(-1.0) - right_side(1.0)) / (2 * step)
 

@@ -54,7 +54,7 @@ def test_bifurcation_of_the_straight_strip(both: Path) -> None:
     least = np.linalg.svd(scale[:, None] * tangent * scale, compute_uv=False)[-2:]
     assert least[1] < 1e-7 * least[0], f"singular values {least}"
     mode = point.mode[both.discretisation.free]
-    equations = both.discretisation.equations.number[both.discretisation.free]
+    equations = both.discretisation.numbering.number[both.discretisation.free]
     force = tangent[:, equations] @ mode
     stiff = np.abs(tangent[:, equations]) @ np.abs(mode)
     assert np.abs(force).max() < 1e-9 * stiff.max(), f"{np.abs(force).max() / stiff.max():.1e}"

@@ -17,7 +17,7 @@ METRIC = Metric(1.0 / (NODES * 2.0**2))
 def random_directions(seed: int) -> tuple[State, np.ndarray, np.ndarray, np.ndarray]:
     """An undeformed state, a chord (nodes, 3) and two increments (nodes, 10)."""
     rng = np.random.default_rng(seed)
-    first, second = rng.normal(size=(2, NODES, 10))
+    first, second = rng.normal(size=(2, NODES, 3))
     return State.undeformed(NODES, 1, 0), rng.normal(size=(NODES, 3)), first, second
 
 
@@ -35,16 +35,16 @@ def test_sphere_is_met_on_the_side_of_the_trial(seed: int, size: float, load: fl
     """From a trial state on it: as far away as that, and ahead."""
     start, ahead, increment, per_load = random_directions(seed)
     # the load moves the body along the path, but not only
-    per_load[:, :3] += 2.0 * ahead * np.sign(load or 1.0)
+    per_load += 2.0 * ahead * np.sign(load or 1.0)
     radius = METRIC.norm(ahead, load)
-    increment *= size * radius / METRIC.norm(increment[:, :3], 0.0)
+    increment *= size * radius / METRIC.norm(increment, 0.0)
     sphere = Sphere(METRIC, start.u, 0.25, ahead, load, radius)
     trial = start._replace(u=start.u + ahead)
     d_load = sphere.d_load(trial, 0.25 + load, increment, per_load)
-    moved = ahead + (increment + d_load * per_load)[:, :3]
-    slope = per_load[:, :3], 1.0
+    moved = ahead + increment + d_load * per_load
+    slope = per_load, 1.0
     # where the increment alone would miss, the closest value is taken: there the two are normal to each other
-    away = ahead + increment[:, :3], load
+    away = ahead + increment, load
     closest = METRIC.norm(*away) ** 2 - METRIC.product(away, slope) ** 2 / METRIC.product(slope, slope)
     if closest < radius**2 * (1.0 - 1e-9):
         assert METRIC.norm(moved, load + d_load) == pytest.approx(radius, rel=1e-9)
@@ -58,11 +58,11 @@ def test_sphere_that_is_missed_is_met_as_closely_as_can_be() -> None:
     start, ahead, _, per_load = random_directions(3)
     sphere = Sphere(METRIC, start.u, 0.0, ahead, 1.0, METRIC.norm(ahead, 1.0))
     trial = start._replace(u=start.u + ahead)
-    far = np.full((NODES, 10), 100.0)
+    far = np.full((NODES, 3), 100.0)
     best = sphere.d_load(trial, 1.0, far, per_load)
 
     def distance(d_load: float) -> float:
-        return METRIC.norm(ahead + (far + d_load * per_load)[:, :3], 1.0 + d_load)
+        return METRIC.norm(ahead + far + d_load * per_load, 1.0 + d_load)
 
     assert distance(best) > sphere.radius
     for other in (best - 0.1, best + 0.1):
@@ -76,7 +76,7 @@ def test_displacement_is_met(seed: int, wanted: float) -> None:
     per_load[2, 1] = np.copysign(max(abs(per_load[2, 1]), 0.1), per_load[2, 1])
     trial = start._replace(u=start.u + ahead)
     d_load = ProbeValue(2, 1, wanted).d_load(trial, 0.3, increment, per_load)
-    assert (trial.u + (increment + d_load * per_load)[:, :3])[2, 1] == pytest.approx(wanted, abs=1e-12)
+    assert (trial.u + increment + d_load * per_load)[2, 1] == pytest.approx(wanted, abs=1e-12)
 
 
 def test_displacement_that_the_load_leaves_alone() -> None:

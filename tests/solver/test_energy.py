@@ -15,6 +15,8 @@ from battery import scaled_error
 
 import magshell as ms
 from magshell import DeformationGradientEnergy, Model, Path, Settings, Step, solve
+from magshell.equations.instant import Instant
+from magshell.evaluation.converged import converged
 from magshell.evaluation.points import evaluate
 from solver.arches import arch, to_the_crown_at
 from solver.models import LENGTH, THICKNESS, rubber
@@ -45,7 +47,7 @@ def evenly(count: int) -> tuple[float, ...]:
 
 def energy(path: Path, step: Step) -> float:
     """Strain energy of a step, J."""
-    return float(path.discretisation.element_energy(step.state).sum())
+    return float(converged(path.discretisation, step).energies[:, 0].sum())
 
 
 def trapezoidal(values: np.ndarray, moved: np.ndarray) -> float:
@@ -74,8 +76,8 @@ def check_orders(table: list[np.ndarray], exact: float, accuracy: float, columns
 
 def load_work(path: Path, steps: Sequence[Step]) -> list[np.ndarray]:
     """Romberg's table of the loads' work on displacements and directors."""
-    external = path.discretisation.external
-    forces = [external.forces(step.state, path.loading(step).loads)[:, :6].ravel() for step in steps]
+    loads = path.discretisation.loads
+    forces = [loads.forces(step.state, path.loading(step).loads)[:, :6].ravel() for step in steps]
     moved = [np.hstack([step.state.u, step.state.w]).ravel() for step in steps]
     return extrapolated(np.array(forces), np.array(moved))
 
@@ -115,10 +117,10 @@ def test_work_of_a_field_is_stored() -> None:
         field_strip(field=(0, 0, 10e-3), stops=[1e-2 * s for s in stops], coupling=DeformationGradientEnergy()), SHARP
     )
     steps = [min(path.steps, key=lambda step: abs(step.load_factor - s)) for s in (0.0, *stops)]
-    body, B = path.discretisation.body, path.model.field.vector
+    body, B = path.discretisation.reference, path.model.field.vector
 
     def potential(step: Step) -> float:
-        moment = np.einsum("epkij,epj->epki", evaluate(body, step.state).F, body.remanence)
+        moment = np.einsum("epkij,epkj->epki", evaluate(body, step.state).F, body.remanence)
         return -float(np.sum((moment @ B) * body.geometry.volume)) / path.model.coupling.vacuum_permeability
 
     multipliers = np.array([[step.load_factor] for step in steps])
@@ -129,10 +131,10 @@ def test_work_of_a_field_is_stored() -> None:
 def asymmetry(path: Path, step: Step) -> float:
     """Of the tangent, rows and columns scaled; the larger of the plain one and the mixed one with other stresses."""
     discretisation, loading = path.discretisation, path.loading(step)
-    other = discretisation.stresses_at(path.steps[step.number // 2].state)
+    other = discretisation.predicted(path.steps[step.number // 2].state)
     worst = 0.0
     for stresses in (None, other):
-        matrix = discretisation.assemble(step.state, loading, stresses).matrix
+        matrix = discretisation.assemble(Instant(step.state, loading, stresses)).matrix
         assert matrix is not None
         tangent = matrix.toarray()
         worst = max(worst, scaled_error(tangent, tangent.T))

@@ -92,7 +92,7 @@ def test_singular_direction_is_named(column: int, name: str) -> None:
     direction = np.zeros(discretisation.dofs)
     direction[equation_numbers(discretisation)[tip, column]] = 1.0
     start = discretisation.undeformed()
-    trial = Trial(start, 0.1, discretisation.stresses_at(start))
+    trial = Trial(start, 0.1, discretisation.predicted(start))
     system = System(discretisation, Singular(direction), model.course(0), Settings())
     with pytest.raises(StepFailure) as caught:
         newton(system, trial, None, lambda *_: None)

@@ -12,6 +12,7 @@ import magshell as ms
 from magshell import Model
 from magshell.cli import main
 from magshell.equations.discretisation import Discretisation
+from magshell.equations.instant import Instant
 from magshell.linalg import make_solver, nested_dissection
 from magshell.linalg.multifrontal.solver import Multifrontal, MultifrontalFactors
 from magshell.solver.memory import PER_ENTRY, Need, memory_free, need_of
@@ -24,7 +25,7 @@ def test_entries_of_the_factors(make: Callable[[], Model]) -> None:
     model, solver = make(), make_solver("multifrontal")
     discretisation = Discretisation(model, nested_dissection)
     state = discretisation.undeformed()
-    matrix = discretisation.assemble(state, model.course(0).at(0.0), discretisation.stresses_at(state)).matrix
+    matrix = discretisation.assemble(Instant(state, model.course(0).at(0.0), discretisation.predicted(state))).matrix
     assert matrix is not None
     solver.factorise(matrix)
     fronts = solver._analysis.fronts

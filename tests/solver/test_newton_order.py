@@ -16,6 +16,7 @@ import pytest
 import magshell as ms
 from magshell import Settings, UniformField, solve
 from magshell.equations.discretisation import Discretisation
+from magshell.equations.instant import Instant, difference, moved
 from magshell.linalg import make_solver, nested_dissection
 from magshell.magnetics import laws
 from magshell.shell.elements import ELEMENTS
@@ -48,10 +49,10 @@ class Recording(Discretisation):
 
     states: list[Any]
 
-    def assemble(self, state, *arguments, **options):
-        if not self.states or self.states[-1] is not state:
-            self.states.append(state)
-        return super().assemble(state, *arguments, **options)
+    def assemble(self, instant, *arguments, **options):
+        if not self.states or self.states[-1] is not instant.state:
+            self.states.append(instant.state)
+        return super().assemble(instant, *arguments, **options)
 
 
 @cache
@@ -67,7 +68,7 @@ def errors(case: Case, mixed: bool, ε: float) -> np.ndarray:
     model, start = case.model, converged(case)
     discretisation = Recording(model, nested_dissection)
     discretisation.states = []
-    trial = Trial(start, BEGIN * (1 + ε), discretisation.stresses_at(start))
+    trial = Trial(start, BEGIN * (1 + ε), discretisation.predicted(start))
     settings = Settings(tolerance=SHARP, mixed_tangent=mixed, max_iterations=20)
     system = System(discretisation, make_solver("superlu"), model.course(0), settings)
     newton(system, trial, None, lambda *_: None)
@@ -105,9 +106,9 @@ def constrained_errors(kind: str, ε: float) -> np.ndarray:
     begin = turned_half_way()
     discretisation = Recording(TURNED_IN_A_FIELD, nested_dissection)
     discretisation.states = []
-    increment, d_alpha = begin.increment_from(discretisation.undeformed())
-    state = begin.moved(ε * increment, ε * d_alpha)
-    stresses = discretisation.predicted_stresses(begin, ε * increment, ε * d_alpha)
+    increment = ε * difference(begin, discretisation.undeformed())
+    state = moved(begin, increment)
+    prediction = discretisation.predicted(begin, increment)
     tip, load_factor = TURNED_IN_A_FIELD.probe_nodes["tip"], 0.5 * (1 + ε)
     held: Constraint = ProbeValue(tip, 2, float(state.u[tip, 2]))
     if kind == "sphere":
@@ -115,7 +116,7 @@ def constrained_errors(kind: str, ε: float) -> np.ndarray:
         held = Sphere(metric, 0 * state.u, 0.0, state.u, load_factor, metric.norm(state.u, load_factor))
     settings = Settings(tolerance=SHARP, max_iterations=20)
     system = System(discretisation, make_solver("superlu"), TURNED_IN_A_FIELD.course(0), settings)
-    solution = newton(system, Trial(state, load_factor, stresses), held, lambda *_: None).trial
+    solution = newton(system, Trial(state, load_factor, prediction), held, lambda *_: None).trial
     if kind == "sphere":
         assert metric.norm(solution.state.u, solution.load_factor) == pytest.approx(held.radius, rel=1e-14)
     else:
@@ -164,7 +165,7 @@ def test_tangent_of_the_free_rotations_at_the_end(model: ms.Model) -> None:
     discretisation, state = path.discretisation, path.steps[-1].state
     tip, step = model.probe_nodes["tip"], 1e-6
 
-    matrix = discretisation.assemble(state, discretisation.model.loading(1.0)).matrix.toarray()
+    matrix = discretisation.assemble(Instant(state, discretisation.model.loading(1.0))).matrix.toarray()
     scale = np.sqrt(np.abs(matrix.diagonal()))
     equations = equation_numbers(discretisation)[tip]
     for component in (7, 9):

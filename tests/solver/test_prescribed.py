@@ -10,6 +10,7 @@ from scipy.optimize import brentq
 
 import magshell as ms
 from magshell import Path, Settings, solve
+from magshell.equations.instant import Instant
 from magshell.shell import rotation
 from solver.models import LAMBDA, LENGTH, MU, THICKNESS, WIDTH, rubber
 
@@ -50,7 +51,7 @@ def pulled(stretch: float, width_held: bool, steps: float) -> Path:
 def force_on(path: Path, group: str) -> np.ndarray:
     """Sum of the forces (3,), N, that the supports exert on a group's nodes at the end."""
     step = path.steps[-1]
-    residual = path.discretisation.assemble(step.state, path.loading(step), tangent=False).residual
+    residual = path.discretisation.assemble(Instant(step.state, path.loading(step)), tangent=False).residual
     nodes = path.model.shell.mesh.nodes_of(group)
     return path.discretisation.to_global(residual)[nodes, :3].sum(axis=0)
 

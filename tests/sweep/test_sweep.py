@@ -33,7 +33,7 @@ def instead(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(autouse=True)
 def compiled(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("magshell.compiled.Kernel.is_compiled", lambda kernel, *laws: True)
+    monkeypatch.setattr("magshell.shell.loops.are_compiled", lambda *laws: True)
 
 
 def test_the_table(
@@ -188,7 +188,7 @@ def test_the_first_cell_of_each_law_goes_ahead_where_kernels_are_to_be_compiled(
     shown: io.StringIO,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("magshell.compiled.Kernel.is_compiled", lambda kernel, *laws: False)
+    monkeypatch.setattr("magshell.shell.loops.are_compiled", lambda *laws: False)
     monkeypatch.setattr(here, "places", 3)
     before = []
 

@@ -14,7 +14,6 @@ from magshell.evaluation.points import PointFields, evaluate, plane_stress_stret
 from magshell.model.course import Loading
 from magshell.shell import rotation
 from magshell.shell.state import State
-from magshell.shell.unknowns import COMPONENTS
 
 
 class Converged:
@@ -117,12 +116,20 @@ class Reached(Protocol):
     def flux_density(self) -> FloatArray:
         """T, (3,)."""
 
+    @property
+    def stage(self) -> int:
+        """Of the path, from 0."""
+
+    @property
+    def load_factor(self) -> float:
+        """Of that stage."""
+
 
 def converged(discretisation: Discretisation, reached: Reached) -> Converged:
-    """What outputs are evaluated of, at a step. (What is held is the state's.)
+    """What outputs are evaluated of, at a step or another state of the path. (What is held is the state's.)
 
-    A critical point and a buckling mode do not keep the loads; there the residual leaves them out.
+    Critical points and buckling modes do not keep the multipliers of the loads: there they are those of the histories.
     """
-    held = np.zeros((len(discretisation.mesh.points), COMPONENTS))
-    loads = getattr(reached, "loads", np.zeros(len(discretisation.model.loads)))
-    return Converged(discretisation, reached.state, Loading(reached.flux_density, loads, held))
+    loading = discretisation.model.course(reached.stage).at(reached.load_factor)
+    loads = getattr(reached, "loads", loading.loads)
+    return Converged(discretisation, reached.state, loading._replace(flux_density=reached.flux_density, loads=loads))

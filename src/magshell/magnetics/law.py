@@ -70,15 +70,17 @@ def coupling_law(law: CouplingLaw, has_energy: bool) -> Callable[[AnyCoupling], 
 
 
 def _called(law: CouplingLaw, cls: Any) -> Callable[..., float]:
-    """The function that kernels call: of pointers."""
+    """The function that kernels call: of pointers. It puts a zero behind the forces, unless the law raises an error."""
     count = len(cls._fields)
     compiled: Any = numba.extending.register_jitable(law)
 
     def called(parameters: Any, m: Any, n: Any, B: Any, gradients: Any, forces: Any, tangent: Any) -> Any:
         coupling = cls(*to_fixed_tuple(numba.carray(parameters, (count,)), count))
         m, n, B = numba.carray(m, (3,)), numba.carray(n, (3,)), numba.carray(B, (3,))
-        gradients, forces = numba.carray(gradients, (GRADIENTS,)), numba.carray(forces, (WORK,))
-        return compiled(coupling, m, n, B, gradients, forces, numba.carray(tangent, (WORK, WORK)))
+        gradients, forces = numba.carray(gradients, (GRADIENTS,)), numba.carray(forces, (WORK + 1,))
+        energy = compiled(coupling, m, n, B, gradients, forces[:WORK], numba.carray(tangent, (WORK, WORK)))
+        forces[WORK] = 0.0
+        return energy
 
     return called
 
@@ -118,10 +120,12 @@ def evaluate(
         Rows M, OMEGA, X.
     """
     places, count = np.shape(m)[:-1], int(np.prod(np.shape(m)[:-1]))
-    energy, forces, tangent = np.zeros(count), np.zeros((count, WORK)), np.zeros((count, WORK, WORK))
+    energy, forces, tangent = np.zeros(count), np.zeros((count, WORK + 1)), np.zeros((count, WORK, WORK))
+    forces[:, WORK] = np.nan
     m, n = (np.ascontiguousarray(one, dtype=float).reshape(-1, 3) for one in (m, n))
     address, parameters = callbacks[type(coupling)].address, np.array(coupling, dtype=float)
     _at_points(address, parameters, m, n, np.asarray(B, dtype=float), energy, forces, tangent)
+    energy, forces = energy + forces[:, WORK], forces[:, :WORK] + forces[:, WORK:]
     return energy.reshape(places), forces.reshape(*places, WORK), tangent.reshape(*places, WORK, WORK)
 
 

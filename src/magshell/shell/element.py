@@ -233,7 +233,7 @@ def condense(
     """Eliminate the unknowns from `size` on: Kᵀ and r condensed in place, Δα = -offset - gain Δv.
 
     Gauss–Jordan with pivoting on [K_αα | K_αv | r_α], in `factor`; False where K_αα is singular. The unknowns come in
-    vectors of three.
+    vectors of three. What is not a number stays so.
     """
     modes = Kt.shape[0] - size
     width = modes + size + 1
@@ -248,7 +248,7 @@ def condense(
         for b in range(a + 1, modes):
             if abs(factor[b, a]) > abs(factor[pivot, a]):
                 pivot = b
-        if not abs(factor[pivot, a]) > 0.0:
+        if abs(factor[pivot, a]) == 0.0:
             return False
         if pivot != a:
             for j in range(width):

@@ -72,7 +72,7 @@ WORKSPACE = np.dtype(
         ("d2z", float, (3,)),
         ("t3", float, (3,)),
         ("gradients", float, (GRADIENTS,)),
-        ("forces", float, (WORK,)),
+        ("forces", float, (WORK + 1,)),
         ("work_tangent", float, (WORK, WORK)),
         ("memory", float, (1,)),
         ("K_g", float, (81,)),

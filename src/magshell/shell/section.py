@@ -193,15 +193,18 @@ def _stress(w: Record, laws: Laws, material: int) -> float:
 
 @inline
 def _work(w: Record, laws: Laws, coupling: int, B: FloatArray) -> float:
-    """Fill the coupling's forces and tangent; returns its energy per volume."""
+    """Fill the coupling's forces and tangent; returns its energy per volume. A law that raises an error leaves NaN."""
     forces, tangent = w.forces, w.work_tangent
+    forces[WORK] = np.nan
     for i in range(WORK):
         forces[i] = 0.0
         for j in range(WORK):
             tangent[i, j] = 0.0
     parameters, address = laws.coupling_parameters[coupling], laws.couplings[coupling]
     energy: float = call(address, parameters, w.m, w.n, B, w.gradients, forces, tangent)
-    return energy
+    for i in range(WORK):
+        forces[i] += forces[WORK]
+    return energy + forces[WORK]
 
 
 @inline
