@@ -195,5 +195,5 @@ def inline(function: Function) -> Function:
 
 def also_compiled(function: Function) -> Function:
     """Let kernels and laws call a plain Python function: it is compiled as a part of them."""
-    made: Function = numba.extending.register_jitable(**_LAW_OPTIONS)(function)
+    made: Function = numba.extending.register_jitable(**_LAW_OPTIONS, forceinline=True)(function)
     return made

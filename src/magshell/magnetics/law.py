@@ -26,7 +26,7 @@ import numpy as np
 from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from magshell.arrays import FloatArray, IntArray
-from magshell.compiled import Callback, Kernel, call, table
+from magshell.compiled import Callback, Kernel, also_compiled, call, table
 
 M, OMEGA, X = 0, 3, 6
 WORK, GRADIENTS = 9, 36
@@ -72,7 +72,7 @@ def coupling_law(law: CouplingLaw, has_energy: bool) -> Callable[[AnyCoupling], 
 def _called(law: CouplingLaw, cls: Any) -> Callable[..., float]:
     """The function that kernels call: of pointers. It puts a zero behind the forces, unless the law raises an error."""
     count = len(cls._fields)
-    compiled: Any = numba.extending.register_jitable(law)
+    compiled: Any = also_compiled(law)
 
     def called(parameters: Any, m: Any, n: Any, B: Any, gradients: Any, forces: Any, tangent: Any) -> Any:
         coupling = cls(*to_fixed_tuple(numba.carray(parameters, (count,)), count))

@@ -22,7 +22,7 @@ import numpy as np
 from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from magshell.arrays import FloatArray, IntArray
-from magshell.compiled import Callback, Kernel, call, table
+from magshell.compiled import Callback, Kernel, also_compiled, call, table
 
 
 class Material(Protocol):
@@ -76,7 +76,7 @@ def material_law(law: ElasticLaw) -> Callable[[AnyMaterial], AnyMaterial]:
 def _elastic(law: ElasticLaw, cls: Any) -> Callable[..., float]:
     """The function that kernels call: of pointers, and without a memory."""
     count = len(cls._fields)
-    compiled: Any = numba.extending.register_jitable(law)
+    compiled: Any = also_compiled(law)
 
     def called(
         parameters: Any,
