@@ -24,6 +24,8 @@ from magshell.solver.waypoint import Waypoint
 
 # Failures in a row after which the arc length is held instead.
 PATIENCE = 2
+# Under load control a path ends where its load factor has gone back behind the start of the stage by so much.
+BACK = 1.0
 # First step along the mode of a branch, in sizes of the body.
 BRANCH_STEP = 0.01
 
@@ -141,7 +143,12 @@ class Follower:
             self._stray(goal)
 
     def _stray(self, goal: Goal) -> None:
-        """Raise StepFailure if the last steps came no nearer to the goal than the ones before."""
+        """Raise StepFailure if the last steps came no nearer to the goal than the ones before, or went far back."""
+        if self.system.course.stage.control == "load" and self.track[-1].load_factor < -BACK:
+            raise StepFailure(
+                f"{self._position()}: under load control the path went back behind the start of the stage, as far as "
+                f"the stage leads forward.{self._turned()} {self._diagnosis(None)}"
+            )
         values = [goal.value(step) for step in self.path.steps[-self.taken :]]
         if last := stagnant(values, goal.wanted, self.settings.largest_step):
             raise StepFailure(self._strayed(goal, last))
