@@ -119,14 +119,14 @@ class Callback(_Kept):
         kinds = {"p": numba.types.CPointer(numba.float64), "d": numba.float64}
         self._signature = tuple(kinds[letter] for letter in signature), numba.float64
         self.shown = f"the law {owner.__name__}"
-        self._compiled: CFunc | None = None  # the code lives as long as this object
+        self._compiled: Any = None  # the code lives as long as this object
 
     @property
     def address(self) -> int:
         """Address of the machine code in this process; the first use compiles it or reads it from the cache."""
         if self._compiled is None:
             with self._one_process():
-                made = CFunc(self._function, self._signature, locals={}, options=dict(_LAW_OPTIONS))
+                made: Any = CFunc(self._function, self._signature, locals={}, options=dict(_LAW_OPTIONS))
                 made._cache = self._store()
                 made.compile()
                 self._compiled = made

@@ -156,7 +156,7 @@ class Store:
         context.refresh()
         found = None
         if self.folder is not None:
-            found = self._read(self._file(self.folder, signature, context.codegen()))
+            found = self._read(self.folder, self._file(self.folder, signature, context.codegen()))
         if found is not None:
             return CompileResult._rebuild(context, *found)
         log.info("compiling %s ...", self._shown)
@@ -183,7 +183,7 @@ class Store:
         codegen = numba.core.registry.cpu_target.target_context.codegen()
         return any(self.folder.glob(f"{self.name}-{_machine(codegen)}-*{SUFFIX}"))
 
-    def _read(self, file: pathlib.Path) -> Any:
+    def _read(self, folder: pathlib.Path, file: pathlib.Path) -> Any:
         """What a file holds; None where there is none, and where it is damaged: then it is removed."""
         try:
             content = file.read_bytes()
@@ -194,7 +194,7 @@ class Store:
             return pickle.loads(payload)
         with contextlib.suppress(OSError):
             file.unlink()
-        _warn_once(f"{self.folder.parent}: compiled kernels there are damaged; they are compiled anew")
+        _warn_once(f"{folder.parent}: compiled kernels there are damaged; they are compiled anew")
         return None
 
     def _file(self, folder: pathlib.Path, signature: Any, codegen: Any) -> pathlib.Path:

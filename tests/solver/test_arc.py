@@ -165,3 +165,15 @@ def test_a_path_that_wanders_ends_with_a_reason(monkeypatch: pytest.MonkeyPatch,
     assert path.steps == record.steps
     assert len(path.steps) > 8
     assert len(path.critical_points) == 1
+
+
+def test_a_path_that_goes_back_far_behind_its_start_ends_under_load_control(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By arc length it goes on."""
+    monkeypatch.setattr(follower, "BACK", 0.01)
+    with pytest.raises(SolveError, match="went back behind the start of the stage") as caught:
+        solve(arch([Stage()]))
+    path = caught.value.path
+    assert loads(path)[-1] < -0.01 <= loads(path)[-2]
+    turn = path.critical_points[0]
+    assert f"The load factor turned at {turn.load_factor:.6g} (critical point 1)" in caught.value.reason
+    assert solve(arch([BY_ARC])).converged

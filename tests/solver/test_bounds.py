@@ -55,10 +55,10 @@ def test_failures_in_a_row_have_an_end(last: int, smallest: float) -> None:
     solved = 0
 
     class Failing(Follower):
-        def _solved(self, attempt, metric, before, goal):
+        def _solved(self, attempt, goal):
             nonlocal solved
             if solved < last:
-                found = super()._solved(attempt, metric, before, goal)
+                found = super()._solved(attempt, goal)
                 solved += found is not None
                 return found
             lengths.append(attempt.intended)

@@ -12,12 +12,12 @@ import numpy as np
 import scipy.sparse as sp
 
 from magshell.arrays import FloatArray, IntArray
-from magshell.compiled import Kernel, inline
+from magshell.compiled import Kernel
 from magshell.equations.frames import bases
 from magshell.equations.numbering import Numbering
 from magshell.model.loads import Pairs
 from magshell.model.supports import Constraints
-from magshell.shell.unknowns import COLUMNS
+from magshell.shell.unknowns import COLUMNS, COMPONENTS
 
 
 class Elements(NamedTuple):
@@ -41,149 +41,99 @@ class Destination(NamedTuple):
     Attributes
     ----------
     elements : Elements
-    partner : ndarray, shape (values, 3)
-        Places of the components of a value's vector; of a scalar -1.
+    entry : ndarray, shape (elements, values)
+        Node and column of each value, as places of flat nodal arrays.
     number, rank : ndarray, shape (nodes, 10)
     indptr : ndarray, shape (equations + 1,)
     offset : ndarray, shape (elements, m, m)
         Of the first row of node I in the columns of node J, at [e, J, I].
-    frame_of : ndarray, shape (nodes, 3)
-    frames : ndarray, shape (frames, 3, 3)
-        Rows are the base vectors.
     """
 
     elements: Elements
-    partner: IntArray
+    entry: IntArray
     number: IntArray
     rank: IntArray
     indptr: IntArray
     offset: IntArray
-    frame_of: IntArray
-    frames: FloatArray
 
 
-class Sums(NamedTuple):
-    """What elements are summed into.
-
-    Attributes
-    ----------
-    data : ndarray, shape (nonzeros,)
-        Values of the tangent, compressed columns.
-    residual : ndarray, shape (nodes, 10)
-    condensed : ndarray, shape (nodes, 10)
-        The residual after the elimination of what elements own, plus the tangent's product with imposed increments.
-    """
-
-    data: FloatArray
-    residual: FloatArray
-    condensed: FloatArray
-
-
-def destination(elements: Elements, numbering: Numbering, constraints: Constraints) -> Destination:
+def destination(elements: Elements, numbering: Numbering) -> Destination:
     """Where the values of these elements go."""
     count, m = elements.nodes.shape
     pairs = np.repeat(elements.nodes, m, axis=1), np.tile(elements.nodes, (1, m))
-    place = {key: at for at, key in enumerate(zip(elements.node.tolist(), elements.component.tolist(), strict=True))}
-    partner = np.full((elements.node.size, 3), -1)
-    for field in ("u", "w", "omega"):
-        start = COLUMNS[field].start
-        for at, (node, component) in enumerate(zip(elements.node, elements.component, strict=True)):
-            if start <= component < start + 3:
-                partner[at] = [place[int(node), start + i] for i in range(3)]
     return Destination(
         elements=elements,
-        partner=partner,
+        entry=COMPONENTS * elements.nodes[:, elements.node] + elements.component,
         number=numbering.number,
         rank=numbering.rank,
         indptr=numbering.indptr,
         offset=numbering.offsets(*pairs).reshape(count, m, m),
-        frame_of=np.ascontiguousarray(constraints.frame_of),
-        frames=np.ascontiguousarray(constraints.frames),
     )
 
 
-@inline
-def _turn_rows(to: Destination, e: int, rows: FloatArray, width: int) -> None:
-    """Turn the rows of each node's vectors into the node's own frame."""
-    if len(to.frames) == 0:
-        return
-    for l in range(len(to.partner)):
-        component = to.elements.component[l]
-        if component == 0 or component == 3 or component == 7:
-            field = 0 if component == 0 else 1 if component == 3 else 2
-            frame = to.frame_of[to.elements.nodes[e, to.elements.node[l]], field]
-            if frame < 0:
-                continue
-            at0, at1, at2 = to.partner[l, 0], to.partner[l, 1], to.partner[l, 2]
-            for j in range(width):
-                a0, a1, a2 = rows[at0, j], rows[at1, j], rows[at2, j]
-                for i in range(3):
-                    row = to.frames[frame, i]
-                    rows[to.partner[l, i], j] = row[0] * a0 + row[1] * a1 + row[2] * a2
-
-
-@inline
-def _turn_columns(to: Destination, e: int, rows: FloatArray, height: int) -> None:
-    """Turn the columns likewise."""
-    if len(to.frames) == 0:
-        return
-    for l in range(len(to.partner)):
-        component = to.elements.component[l]
-        if component == 0 or component == 3 or component == 7:
-            field = 0 if component == 0 else 1 if component == 3 else 2
-            frame = to.frame_of[to.elements.nodes[e, to.elements.node[l]], field]
-            if frame < 0:
-                continue
-            at0, at1, at2 = to.partner[l, 0], to.partner[l, 1], to.partner[l, 2]
-            for j in range(height):
-                a0, a1, a2 = rows[j, at0], rows[j, at1], rows[j, at2]
-                for i in range(3):
-                    row = to.frames[frame, i]
-                    rows[j, to.partner[l, i]] = row[0] * a0 + row[1] * a1 + row[2] * a2
+def summed(to: Destination, forces: FloatArray, nodes: int) -> FloatArray:
+    """Forces (elements, values) of all elements, summed at the nodes (nodes, 10)."""
+    flat = np.bincount(to.entry.ravel(), forces.ravel(), COMPONENTS * nodes)
+    return np.asarray(flat, dtype=float).reshape(nodes, COMPONENTS)
 
 
 @Kernel
-def add_forces(to: Destination, first: int, r: FloatArray, out: Sums) -> None:
-    """Add forces r (range, values, 2) of elements from `first` on: to the residual, and to what is condensed."""
-    values = len(to.partner)
-    for e in range(first, min(first + len(r), len(to.elements.nodes))):
-        _turn_rows(to, e, r[e - first], 2)
-        for l in range(values):
-            node, component = to.elements.nodes[e, to.elements.node[l]], to.elements.component[l]
-            out.residual[node, component] += r[e - first, l, 0]
-            out.condensed[node, component] += r[e - first, l, 1]
+def turn_matrices(to: Destination, first: int, K: FloatArray, frame_of: IntArray, frames: FloatArray) -> None:
+    """Turn transposed matrices K (range, values, values) of elements from `first` on into the nodes' frames.
 
-
-@Kernel
-def add_matrices(to: Destination, first: int, K: FloatArray, weight: float, imposed: FloatArray, out: Sums) -> None:
-    """Add transposed matrices K (range, values, values) of elements from `first` on, and products with what is imposed.
-
-    K is turned into the nodes' frames in place. The rows of one node lie side by side in a column.
+    Rows and columns of a vector lie apart from each other by the number of nodes that carry it.
     """
-    values, m = len(to.partner), to.elements.nodes.shape[1]
-    place = np.zeros((m, values), dtype=np.int64)
+    node, component = to.elements.node, to.elements.component
+    values = len(node)
     for e in range(first, min(first + len(K), len(to.elements.nodes))):
-        nodes, matrix = to.elements.nodes[e], K[e - first]
-        _turn_rows(to, e, matrix, values)
-        _turn_columns(to, e, matrix, values)
+        for l in range(values):
+            c = component[l]
+            if c != 0 and c != 3 and c != 7:
+                continue
+            stride = 0
+            for k in range(values):
+                stride += component[k] == c
+            frame = frame_of[to.elements.nodes[e, node[l]], 0 if c == 0 else 1 if c == 3 else 2]
+            if frame < 0:
+                continue
+            matrix = K[e - first]
+            for side in range(2):
+                for j in range(values):
+                    a0, a1, a2 = matrix[l, j], matrix[l + stride, j], matrix[l + 2 * stride, j]
+                    if side == 1:
+                        a0, a1, a2 = matrix[j, l], matrix[j, l + stride], matrix[j, l + 2 * stride]
+                    for i in range(3):
+                        turned = frames[frame, i, 0] * a0 + frames[frame, i, 1] * a1 + frames[frame, i, 2] * a2
+                        if side == 0:
+                            matrix[l + i * stride, j] = turned
+                        else:
+                            matrix[j, l + i * stride] = turned
+
+
+@Kernel
+def add_matrices(to: Destination, first: int, K: FloatArray, weight: float, data: FloatArray) -> None:
+    """Add transposed matrices K (range, values, values) of elements from `first` on to the tangent's values.
+
+    The rows of one node lie side by side in a column.
+    """
+    node, component = to.elements.node, to.elements.component
+    values, m = len(node), to.elements.nodes.shape[1]
+    rank, place = np.zeros(values, dtype=np.int64), np.zeros(values, dtype=np.int64)
+    for e in range(first, min(first + len(K), len(to.elements.nodes))):
+        nodes = to.elements.nodes[e]
+        for l in range(values):
+            held = to.number[nodes[node[l]], component[l]] < 0
+            rank[l] = -1 if held else to.rank[nodes[node[l]], component[l]]
         for J in range(m):
             for l in range(values):
-                I, component = to.elements.node[l], to.elements.component[l]
-                held = to.number[nodes[I], component] < 0
-                place[J, l] = -1 if held else to.offset[e, J, I] + to.rank[nodes[I], component]
-        for l in range(values):
-            J, component = to.elements.node[l], to.elements.component[l]
-            number, row = to.number[nodes[J], component], matrix[l]
-            if number < 0:
-                given = weight * imposed[nodes[J], component]
-                if given != 0.0:
-                    for k in range(values):
-                        out.condensed[nodes[to.elements.node[k]], to.elements.component[k]] += row[k] * given
-                continue
-            start, places = to.indptr[number], place[J]
-            for k in range(values):
-                if places[k] >= 0:
-                    out.data[start + places[k]] += weight * row[k]
+                place[l] = to.offset[e, J, node[l]] + rank[l]
+            for l in range(values):
+                if node[l] != J or rank[l] < 0:
+                    continue
+                start, row = to.indptr[to.number[nodes[J], component[l]]], K[e - first, l]
+                for k in range(values):
+                    if rank[k] >= 0:
+                        data[start + place[k]] += weight * row[k]
 
 
 class Insertion:

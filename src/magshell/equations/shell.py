@@ -7,14 +7,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray, IntArray
+from magshell.equations.frames import to_frames, to_global
 from magshell.equations.insertion import (
     Destination,
     Elements,
     Insertion,
-    Sums,
-    add_forces,
     add_matrices,
     destination,
+    summed,
+    turn_matrices,
 )
 from magshell.equations.instant import Increment, Instant, Prediction, Weights
 from magshell.equations.numbering import Numbering
@@ -56,7 +57,7 @@ class ShellTerm:
         batch = min(BATCH, count)
         self._filled = loops.Filled(
             K=np.zeros((batch, values + inner, padded(values + inner))),
-            r=np.zeros((batch, values + inner, 2)),
+            r=np.zeros((count, values, 2)),
             gain=np.zeros((count, inner, values)),
             offset=np.zeros((count, inner)),
             energy=np.zeros((count, 2)),
@@ -66,11 +67,11 @@ class ShellTerm:
         shape = self.body.levels.shape
         self._unstressed = loops.Stresses(np.zeros((*shape, 3, 3)), np.zeros((*shape[:2], 2, 3)))
         self._noise = ROUND_OFF * unit_forces(reference.geometry, reference.shape, stiffest[:, None])
-        self._no_matrix, self._free = np.zeros(0), np.zeros((nodes, COMPONENTS))
 
     def place(self, numbering: Numbering, constraints: Constraints) -> None:
         """Tell the term where its values go."""
-        self._to: Destination = destination(self.elements, numbering, constraints)
+        self._to: Destination = destination(self.elements, numbering)
+        self._constraints = constraints
         spins = numbering.number[:, COLUMNS["omega"]]
         self._transported: AnyArray = np.sum(spins < 0, axis=1) == 1
 
@@ -84,9 +85,6 @@ class ShellTerm:
         """See `Term`."""
         filled, tangent = self._filled, insertion is not None
         filled.scale[:], filled.enhancement_residual[:] = 0.0, 0.0
-        data = self._no_matrix if insertion is None else insertion.data
-        sums = Sums(data, np.zeros((self._nodes, COMPONENTS)), np.zeros((self._nodes, COMPONENTS)))
-        given = self._free if imposed is None else imposed
         mixed = instant.prediction is not None
         request = Request(instant.loading.flux_density, mixed, tangent)
         stresses = self._unstressed if instant.prediction is None else instant.prediction
@@ -96,11 +94,28 @@ class ShellTerm:
             )
             if element >= 0:
                 raise InvertedElement(element, determinant)
-            add_forces(self._to, first, filled.r, sums)
-            if tangent:
-                add_matrices(self._to, first, filled.K, weights.displacement, given, sums)
+            if insertion is not None:
+                self._insert(first, weights, insertion, imposed)
+        residual = self._at_nodes(filled.r[:, :, 0])
+        condensed = self._at_nodes(filled.r[:, :, 1]) if tangent else residual
         scale, inner = filled.scale.sum(axis=1), float(np.sqrt(filled.enhancement_residual[0]))
-        return Contribution(sums.residual, sums.condensed, scale, inner)
+        return Contribution(residual, condensed, scale, inner)
+
+    def _at_nodes(self, forces: FloatArray) -> FloatArray:
+        """Forces (elements, values), summed at the nodes, in their frames."""
+        return to_frames(self._constraints, summed(self._to, forces, self._nodes))
+
+    def _insert(self, first: int, weights: Weights, insertion: Insertion, imposed: FloatArray | None) -> None:
+        """Put the matrices of elements from `first` on into the tangent, and their products with what is imposed."""
+        K, constraints, values = self._filled.K, self._constraints, self.elements.node.size
+        some = slice(first, first + len(K))
+        if imposed is not None:
+            given = to_global(constraints, imposed).ravel()[self._to.entry[some]]
+            K_given = np.einsum("ekl,ek->el", K[: len(given), :values, :values], given)
+            self._filled.r[some, :, 1] += weights.displacement * K_given
+        if len(constraints.frames):
+            turn_matrices(self._to, first, K, constraints.frame_of, constraints.frames)
+        add_matrices(self._to, first, K, weights.displacement, insertion.data)
 
     def energy(self, instant: Instant) -> FloatArray:
         """Elastic and magnetic energy of each element (elements, 2), J."""
@@ -129,12 +144,12 @@ class ShellTerm:
         return stresses
 
     def recovered(self, nodal: FloatArray, whole: bool) -> FloatArray:
-        """See `Term`."""
-        filled, layout = self._filled, self.body.layout
-        d_alpha = np.empty((len(self.body.elements), layout.modes, 3))
-        offset = filled.offset if whole else np.zeros_like(filled.offset)
-        loops.recover_enhancement(self.body.elements, layout, nodal, filled.gain, offset, d_alpha)
-        return d_alpha
+        """See `Term`. Δα = -offset - gain Δv."""
+        filled, modes = self._filled, self.body.layout.modes
+        d_alpha = np.einsum("eal,el->ea", filled.gain, nodal.ravel()[self._to.entry])
+        if whole:
+            d_alpha += filled.offset
+        return -np.ascontiguousarray(np.swapaxes(d_alpha.reshape(-1, 3, modes), 1, 2))
 
     def noise(self) -> FloatArray:
         """See `Term`."""

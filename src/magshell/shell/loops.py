@@ -71,19 +71,19 @@ class Stresses(NamedTuple):
 
 
 class Filled(NamedTuple):
-    """What `fill` fills, for a range of elements but for the last four: sums over all of them.
+    """What `fill` fills.
 
     Attributes
     ----------
     K : ndarray, shape (range, values + 3 modes, padded)
-        Transposed condensed tangents; only rows and columns of nodal values count.
-    r : ndarray, shape (range, values + 3 modes, 2)
+        Transposed condensed tangents of a range of elements; only rows and columns of nodal values count.
+    r : ndarray, shape (elements, values, 2)
         Residuals as they are, and condensed.
     gain : ndarray, shape (elements, 3 modes, values)
     offset : ndarray, shape (elements, 3 modes)
-        Δα = -offset - gain Δv, of all elements.
+        Δα = -offset - gain Δv.
     energy : ndarray, shape (elements, 2)
-        Elastic and magnetic, J, of all elements.
+        Elastic and magnetic, J.
     scale : ndarray, shape (4, 2)
         Of u, w, φ, ω: sums of squares of the elements' internal forces and of their magnetic forces.
     enhancement_residual : ndarray, shape (1,)
@@ -135,7 +135,7 @@ def fill(
     w = records[0]
     at_points = Request(request.flux_density, request.mixed, tangent or body.plane_stress)
     for e in range(first, min(first + len(out.K), len(body.elements))):
-        nodes, Kt, r = body.elements[e], out.K[e - first], out.r[e - first]
+        nodes, Kt, r = body.elements[e], out.K[e - first], out.r[e]
         gather(nodes, state, state.alpha[e], layout, v)
         spin_derivatives(v, layout, T)
         forces[:, :], radial[:] = 0.0, 0.0
@@ -176,8 +176,8 @@ def fill(
             out.energy[e, INTERNAL] += hold_vector(body.hold, number, e, layout, v, alpha, vectors, forces, Kt)
         for l in range(size):
             r_sum[l] = forces[l, INTERNAL] + forces[l, MAGNETIC]
-            r[l, 0] = r_sum[l]
             if l < nodal:
+                r[l, 0] = r_sum[l]
                 kind = 0 if l < layout.at_w else 1 if l < layout.at_phi else 2 if l < layout.at_q else 3
                 out.scale[kind, INTERNAL] += forces[l, INTERNAL] ** 2
                 out.scale[kind, MAGNETIC] += forces[l, MAGNETIC] ** 2
@@ -192,7 +192,7 @@ def fill(
                     _add_spin_transport(r_sum, layout, n, Kt)
             if not condense(Kt, r_sum, nodal, out.gain[e], out.offset[e], factor):
                 return e, 0.0
-            for l in range(size):
+            for l in range(nodal):
                 r[l, 1] = r_sum[l]
     return -1, 1.0
 
@@ -209,29 +209,6 @@ def _gather_increment(nodes: IntArray, increment: FloatArray, layout: Layout, dv
             dv[layout.at_q + i * layout.q + n] = increment[nodes[n], 7 + i]
     for n in range(layout.phi):
         dv[layout.at_phi + n] = increment[nodes[n], 6]
-
-
-@Kernel
-def recover_enhancement(
-    elements: IntArray,
-    layout: Layout,
-    increment: FloatArray,
-    gain: FloatArray,
-    offset: FloatArray,
-    d_alpha: FloatArray,
-) -> None:
-    """Fill Δα (elements, modes, 3) = -offset - gain Δv."""
-    modes = layout.modes
-    dv = np.zeros(layout.nodal)
-    for e in range(len(elements)):
-        _gather_increment(elements[e], increment, layout, dv)
-        for m in range(modes):
-            for i in range(3):
-                a = i * modes + m
-                s = offset[e, a]
-                for l in range(dv.size):
-                    s += gain[e, a, l] * dv[l]
-                d_alpha[e, m, i] = -s
 
 
 @Kernel
@@ -268,5 +245,5 @@ def predict_stresses(body: Body, state: State, increment: FloatArray, d_alpha: F
 
 def are_compiled(material: type, coupling: type) -> bool:
     """Whether all that a solve compiles waits in the cache for these laws."""
-    made = (fill, predict_stresses, recover_enhancement, materials[material], couplings[coupling])
+    made = (fill, predict_stresses, materials[material], couplings[coupling])
     return all(one.is_compiled() for one in made)

@@ -29,14 +29,13 @@ class NoRoot(ArithmeticError):
 
 
 class Metric(NamedTuple):
-    """Inner product of directions (displacements, load factor); `scale` is 1/(n L²), `load_weight` is ψ."""
+    """Inner product of directions (displacements, load factor); `scale` is 1/(n L²)."""
 
     scale: float
-    load_weight: float = LOAD_WEIGHT
 
     def product(self, first: tuple[FloatArray, float], second: tuple[FloatArray, float]) -> float:
         """Of two directions."""
-        return float(self.scale * np.vdot(first[0], second[0]) + self.load_weight**2 * first[1] * second[1])
+        return float(self.scale * np.vdot(first[0], second[0]) + LOAD_WEIGHT**2 * first[1] * second[1])
 
     def norm(self, u: FloatArray, load: float) -> float:
         """Length of a direction."""

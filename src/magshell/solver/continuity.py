@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from itertools import pairwise
-
 import numpy as np
 
 from magshell.solver.constraints import Metric
@@ -22,21 +19,6 @@ JUMP = 0.5
 def between(first: Point, second: Point) -> Direction:
     """From one point to another."""
     return second.state.u - first.state.u, second.load_factor - first.load_factor
-
-
-def measured(metric: Metric, track: Sequence[Point]) -> list[Point]:
-    """Points with the arc lengths and slopes of a metric, the last at 0."""
-    points = [point._replace(slope=_unit(metric, point.slope)) for point in track]
-    at, found = 0.0, [points[-1]._replace(arc_length=0.0)]
-    for first, second in reversed([*pairwise(points)]):
-        at -= arc(metric, between(first, second), first.slope, second.slope)
-        found.insert(0, first._replace(arc_length=at))
-    return found
-
-
-def _unit(metric: Metric, slope: Slope) -> Slope:
-    length = metric.norm(*slope.direction)
-    return Slope((1.0 / length) * slope.increment, slope.load / length)
 
 
 def length_along(metric: Metric, first: Point, second: Point) -> float:

@@ -11,8 +11,8 @@ from magshell.equations.instant import Increment
 from magshell.evaluation.balance import Balance, balance
 from magshell.solver.attempt import Attempt, next_attempt
 from magshell.solver.constraints import Metric
-from magshell.solver.continuity import check_near, length_along, measured
-from magshell.solver.critical import LIMIT_POINT, CriticalPoint, Found, locate, passed
+from magshell.solver.continuity import check_near, length_along
+from magshell.solver.critical import LIMIT_POINT, CriticalPoint, locate, passed
 from magshell.solver.diagnosis import diagnosis
 from magshell.solver.events import Iteration, Observer
 from magshell.solver.goals import Goal, ProbeGoal, goals_of
@@ -26,6 +26,8 @@ from magshell.solver.waypoint import Waypoint
 
 # Failures in a row after which the arc length is held instead.
 PATIENCE = 2
+# Under load control a path ends where its load factor has gone back behind the start of the stage by so much.
+BACK = 1.0
 # First step along the mode of a branch, in sizes of the body.
 BRANCH_STEP = 0.01
 
@@ -65,7 +67,6 @@ class Follower:
     def enter(self, number: int) -> Start:
         """Make a stage the present one."""
         start, self.stage = start_of(self.path, number), number
-        self.origin = start.state
         course = self.path.model.course(number, start.amounts)
         self.path.courses[number:] = [course]
         self.system = self.system._replace(course=course)
@@ -124,10 +125,8 @@ class Follower:
         steps that succeed.
         """
         while True:
-            metric = self.local_metric()
-            points = measured(metric, self.track)
-            attempt = next_attempt(self.system, metric, points, goal, self.control.size, self.by_arc)
-            solved = self._solved(attempt, metric, points[-1], goal)
+            attempt = next_attempt(self.system, self.metric, self.track, goal, self.control.size, self.by_arc)
+            solved = self._solved(attempt, goal)
             if solved is None:
                 self.control = self.control.failed(attempt.size, attempt.intended)
                 self.by_arc |= self.control.failures == PATIENCE
@@ -146,41 +145,34 @@ class Follower:
             self._stray(goal)
 
     def _stray(self, goal: Goal) -> None:
-        """Raise StepFailure if the last steps came no nearer to the goal than the ones before."""
+        """Raise StepFailure if the last steps came no nearer to the goal than the ones before, or went far back."""
+        if self.system.course.stage.control == "load" and self.track[-1].load_factor < -BACK:
+            raise StepFailure(
+                f"{self._position()}: under load control the path went back behind the start of the stage, as far as "
+                f"the stage leads forward.{self._turned()} {self._diagnosis(None)}"
+            )
         values = [goal.value(step) for step in self.path.steps[-self.taken :]]
         if last := stagnant(values, goal.wanted, self.settings.largest_step):
             raise StepFailure(self._strayed(goal, last))
 
-    def local_metric(self) -> Metric:
-        """In which the load factor weighs no less than the displacements of the stage so far."""
-        steps = [step for step in self.path.steps if step.stage == self.stage]
-        moved = max((self.metric.norm(step.state.u - self.origin.u, 0.0) for step in steps), default=0.0)
-        return self.metric._replace(load_weight=max(self.metric.load_weight, moved))
-
-    def _solved(
-        self, attempt: Attempt, metric: Metric, last: Point, goal: Goal
-    ) -> tuple[Point, Solution, list[CriticalPoint]] | None:
+    def _solved(self, attempt: Attempt, goal: Goal) -> tuple[Point, Solution, list[CriticalPoint]] | None:
         """What a step leads to, and the critical points passed; None, and the observers know why, if it failed."""
-        trial = attempt.trial
+        last, trial = self.track[-1], attempt.trial
         try:
             solution = newton(self.system, trial, attempt.constraint, lambda *heard: self._report(trial, *heard))
             found = solution.trial
             chord: Direction = found.state.u - last.state.u, found.load_factor - last.load_factor
             missed: Direction = found.state.u - trial.state.u, found.load_factor - trial.load_factor
             # No factors outlive their use: two sets of them at a time would be twice the memory.
-            factors, solution = close_factors(metric, solution, chord), solution._replace(factors=None)
-            point = point_at(self.system, metric, solution, factors, 0.0, chord)
+            factors, solution = close_factors(self.metric, solution, chord), solution._replace(factors=None)
+            point = point_at(self.system, self.metric, solution, factors, 0.0, chord)
             factors = None
-            length = length_along(metric, last, point)
-            check_near(metric.norm(*missed), length)
-            point = point._replace(arc_length=length)
+            length = length_along(self.metric, last, point)
+            check_near(self.metric.norm(*missed), length)
+            point = point._replace(arc_length=last.arc_length + length)
             if not attempt.at_goal and (goal.wanted - goal.value(last)) * (goal.wanted - goal.value(point)) <= 0.0:
                 raise StepFailure("the step goes beyond a stop")
-            before = self.track[-1]
-            critical = [*locate(self.system, metric, last, point, self._report)] if passed(last, point) else []
-            own = measured(self.metric, [before, point])
-            point = own[-1]._replace(arc_length=before.arc_length - own[0].arc_length)
-            return point, solution, self._numbered(critical, before.arc_length, -own[0].arc_length / length)
+            return point, solution, self._located(last, point)
         except StepFailure as failure:
             self.failure = StepFailure(str(failure), failure.inverted)  # without the frames, which hold the factors
             self.path.cuts += 1
@@ -188,8 +180,10 @@ class Follower:
                 observer.cut(trial.load_factor, str(failure))
             return None
 
-    def _numbered(self, critical: Sequence[Found], before: float, scale: float) -> list[CriticalPoint]:
-        """Critical points of a step; their arc lengths in it, times a scale, are added to that before it."""
+    def _located(self, before: Point, after: Point) -> list[CriticalPoint]:
+        """The critical points between two points; raises StepFailure if no path leads from one to the other."""
+        if not passed(before, after):
+            return []
         course, number = self.system.course, len(self.path.critical_points)
         return [
             CriticalPoint(
@@ -198,12 +192,12 @@ class Follower:
                 stage=self.stage,
                 load_factor=found.point.load_factor,
                 flux_density=course.at(found.point.load_factor).flux_density,
-                arc_length=before + scale * found.point.arc_length,
+                arc_length=found.point.arc_length,
                 state=found.point.state,
                 mode=found.mode,
                 negative_pivots=found.negative_pivots,
             )
-            for count, found in enumerate(critical, start=1)
+            for count, found in enumerate(locate(self.system, self.metric, before, after, self._report), start=1)
         ]
 
     def _balance(self, solution: Solution) -> Balance:
