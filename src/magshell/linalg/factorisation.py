@@ -149,11 +149,10 @@ def _equilibrate(
     asymmetry = 0.0
     for j in range(n):
         for p in range(indptr[j], indptr[j + 1]):
-            scaled[p] = data[p] * (scale[j] * scale[indices[p]])
-        for p in range(indptr[j], indptr[j + 1]):
             i = indices[p]
+            scaled[p] = data[p] * (scale[j] * scale[i])
             if i > j:
-                break
+                continue
             at = mirror[i]
             if i == j:
                 mirror[j] = p + 1

@@ -87,7 +87,7 @@ def view(typing: Any, address: Any, start: Any, size: Any) -> Any:
 
 
 @inline
-def subtract_product(dgemm: int, A: Panel, B: Panel, form: int, C: Panel) -> None:
+def subtract_product(dgemm: int, A: Panel, B: Panel, form: np.uint8, C: Panel) -> None:
     """C -= A B, or C -= A Bᵀ; `form` is AS_IT_IS or TRANSPOSED."""
     if A.columns == 0 or C.rows == 0 or C.columns == 0:
         return

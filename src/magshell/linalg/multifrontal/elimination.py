@@ -54,22 +54,19 @@ class Room(NamedTuple):
 @Kernel
 def scatter(indptr: IntArray, data: AnyArray, entries: Entries, factors: Factors) -> None:
     """Put the entries of the matrix into the panels, which are zero."""
-    lower, upper, symmetric = factors.lower, factors.upper, factors.symmetric
     starts = entries.starts
     for b in range(starts.size - 1):
         for j in range(starts[b + 1] - starts[b]):
             p = indptr[starts[b] + j]
             for pair in range(entries.pointer[b], entries.pointer[b + 1]):
                 row = entries.rows[pair]
-                size, target = starts[row + 1] - starts[row], entries.target[pair]
-                if target >= 0:
-                    at = target + j * entries.column_step[pair]
+                size, at, panels = starts[row + 1] - starts[row], entries.target[pair], factors.lower
+                if at < 0:
+                    at, panels = ~at, factors.upper  # empty if the matrix is symmetric
+                if panels.size > 0:
+                    into, step = at + j * entries.column_step[pair], entries.row_step[pair]
                     for i in range(size):
-                        lower[at + i] = data[p + i]
-                elif not symmetric:
-                    at, step = ~target + j, entries.row_step[pair]
-                    for i in range(size):
-                        upper[at + i * step] = data[p + i]
+                        panels[into + i * step] = data[p + i]
                 p += size
 
 
@@ -202,7 +199,7 @@ def _factorise_block(block: Panel, symmetric: bool, dgemm: int) -> float:
 
 
 @inline
-def _divide(triangle: Panel, X: Panel, form: int, dgemm: int) -> None:
+def _divide(triangle: Panel, X: Panel, form: np.uint8, dgemm: int) -> None:
     """X := X U⁻¹, or transposed X := X L⁻ᵀ with ones on the diagonal of L, by strips; L and U are in one block."""
     lower = form == TRANSPOSED
     for b in range(0, X.columns, STRIP):
@@ -216,7 +213,7 @@ def _divide(triangle: Panel, X: Panel, form: int, dgemm: int) -> None:
 
 
 @inline
-def _divide_strip(triangle: Panel, X: Panel, form: int) -> None:
+def _divide_strip(triangle: Panel, X: Panel, form: np.uint8) -> None:
     """The same for few columns, by so many rows at a time as the cache keeps."""
     lower = form == TRANSPOSED
     T = view(triangle.address, 0, triangle.stride * triangle.columns)
