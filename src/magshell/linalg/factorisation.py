@@ -83,8 +83,10 @@ class Scaled(NamedTuple):
 
 def scaled(matrix: sp.csc_array) -> Scaled:
     """A scaled copy of a matrix."""
-    data, scale = np.empty_like(matrix.data), np.empty(matrix.shape[0])
-    asymmetry = equilibrate(matrix.indptr, matrix.indices, matrix.data, data, scale)
+    data, scale = np.empty_like(matrix.data), np.ones(matrix.shape[0])
+    asymmetry = _equilibrate(
+        matrix.indptr, matrix.indices, matrix.data, data, scale, np.empty_like(scale), matrix.indptr[1:].copy()
+    )
     return Scaled(sp.csc_array((data, matrix.indices, matrix.indptr), shape=matrix.shape), scale, asymmetry)
 
 
@@ -121,28 +123,36 @@ class ScaledFactors:
 
 
 @Kernel
-def equilibrate(indptr: IntArray, indices: AnyArray, data: FloatArray, scaled: FloatArray, scale: FloatArray) -> float:
-    """Fill s A s and the factors s that make the largest entries of the columns one; returns its asymmetry."""
+def _equilibrate(
+    indptr: IntArray,
+    indices: AnyArray,
+    data: FloatArray,
+    scaled: FloatArray,
+    scale: FloatArray,
+    largest: FloatArray,
+    mirror: AnyArray,
+) -> float:
+    """Fill s A s and the factors s that make the largest entries of the columns one; returns its asymmetry.
+
+    The factors are one before; `mirror` begins as the end of each column.
+    """
     n = scale.size
-    largest, mirror = np.empty(n), indptr[1:].astype(np.int64)
-    scale[:] = 1.0
     for _ in range(2):
         for j in range(n):
-            largest[j] = 0.0
+            most = 0.0
             for p in range(indptr[j], indptr[j + 1]):
-                largest[j] = max(largest[j], abs(data[p]) * scale[indices[p]])
-            largest[j] *= scale[j]
+                most = max(most, abs(data[p]) * scale[indices[p]])
+            largest[j] = most * scale[j]
         for j in range(n):
             if largest[j] > 0.0:
                 scale[j] /= np.sqrt(largest[j])
     asymmetry = 0.0
     for j in range(n):
         for p in range(indptr[j], indptr[j + 1]):
-            scaled[p] = data[p] * (scale[j] * scale[indices[p]])
-        for p in range(indptr[j], indptr[j + 1]):
             i = indices[p]
+            scaled[p] = data[p] * (scale[j] * scale[i])
             if i > j:
-                break
+                continue
             at = mirror[i]
             if i == j:
                 mirror[j] = p + 1

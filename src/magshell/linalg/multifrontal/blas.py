@@ -12,9 +12,12 @@ import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
 from numba.extending import get_cython_function_address, intrinsic
+from numba.np.arrayobj import populate_array
 
-from magshell.arrays import AnyArray
 from magshell.compiled import inline
+
+# Bytes of a number.
+WIDTH = 8
 
 AS_IT_IS, TRANSPOSED = (np.uint8(ord(letter)) for letter in "NT")
 
@@ -54,19 +57,41 @@ def _call(typing: Any, address: Any, arguments: Any) -> Any:
     return signature, generate
 
 
-@inline
-def address_of(values: AnyArray) -> Any:
+@intrinsic  # type: ignore[untyped-decorator]
+def address_of(typing: Any, values: Any) -> Any:
     """Address of the first entry of an array."""
-    return np.int64(values.ctypes.data)
+
+    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        data = context.make_array(values)(context, builder, given[0]).data
+        return builder.ptrtoint(data, ir.IntType(64))
+
+    return types.int64(values), generate
+
+
+@intrinsic  # type: ignore[untyped-decorator]
+def view(typing: Any, address: Any, start: Any, size: Any) -> Any:
+    """So many entries of a panel or of an array from one on, (size,), by the address of the first of all.
+
+    Unlike a slice it costs next to nothing to compile, and indices are not checked.
+    """
+    kind = types.Array(types.float64, 1, "C")
+
+    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        made = context.make_array(kind)(context, builder)
+        width = context.get_constant(types.intp, WIDTH)
+        data = builder.gep(builder.inttoptr(given[0], made.data.type), [given[1]])
+        populate_array(made, data, shape=[given[2]], strides=[width], itemsize=width, meminfo=None)
+        return made._getvalue()
+
+    return kind(types.int64, types.int64, types.int64), generate
 
 
 @inline
-def subtract_product(dgemm: int, A: Panel, B: Panel, transposed: bool, C: Panel) -> None:
-    """C -= A B, or C -= A Bᵀ."""
+def subtract_product(dgemm: int, A: Panel, B: Panel, form: np.uint8, C: Panel) -> None:
+    """C -= A B, or C -= A Bᵀ; `form` is AS_IT_IS or TRANSPOSED."""
     if A.columns == 0 or C.rows == 0 or C.columns == 0:
         return
     inner = np.int32(A.columns)
-    form = TRANSPOSED if transposed else AS_IT_IS
     _call(
         dgemm,
         (

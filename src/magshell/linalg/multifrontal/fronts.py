@@ -17,7 +17,7 @@ import numpy as np
 
 from magshell.arrays import AnyArray, IntArray
 from magshell.compiled import Kernel
-from magshell.linalg.multifrontal.tree import block_graph, blocks_of, is_symmetric, postordered_tree, supernodes_of
+from magshell.linalg.multifrontal.tree import Tree, block_graph, elimination_tree, ranges, supernodes_of
 
 # Zeros that supernodes may store, per entry of their pivot columns; columns up to which they are joined at any price.
 WASTE, NARROW = 0.12, 16
@@ -91,7 +91,20 @@ class Entries(NamedTuple):
 
 
 class Structure(NamedTuple):
-    """Blocks of the fronts: places of the blocks' unknowns, first blocks of the fronts, blocks beyond each front."""
+    """Blocks of the fronts, numbered in postorder.
+
+    Attributes
+    ----------
+    order : ndarray, shape (blocks,)
+        The postorder.
+    places : ndarray, shape (blocks + 1,)
+        First unknown of each block in the elimination order.
+    supernodes : ndarray, shape (fronts + 1,)
+        First block of each front.
+    pointer : ndarray, shape (fronts + 1,)
+    beyond : ndarray
+        Blocks below the pivot block of each front, ascending.
+    """
 
     order: IntArray
     places: IntArray
@@ -99,26 +112,44 @@ class Structure(NamedTuple):
     pointer: IntArray
     beyond: IntArray
 
+    @property
+    def owner(self) -> IntArray:
+        """Front of which a block's unknowns are pivots, (blocks,)."""
+        return np.repeat(np.arange(self.supernodes.size - 1), np.diff(self.supernodes))
+
+    def position(self, front: IntArray, block: IntArray) -> IntArray:
+        """First row of blocks in fronts that they are in; arrays of the same shape."""
+        places, first = self.places, self.supernodes[front]
+        size = np.diff(places)[self.beyond]
+        above = np.cumsum(size) - size
+        n, count = self.order.size, self.supernodes.size - 1
+        keys = np.repeat(np.arange(count), np.diff(self.pointer)) * n + self.beyond
+        position = places[block] - places[first]
+        last = self.supernodes[front + 1]
+        outside = np.flatnonzero(block >= last)
+        front, block = front[outside], block[outside]
+        row = above[np.searchsorted(keys, front * n + block)] - above[self.pointer[front]]
+        position[outside] = places[last[outside]] - places[first[outside]] + row
+        return np.asarray(position)
+
 
 def fronts_of(pointer: IntArray, rows: IntArray, widths: IntArray) -> tuple[Fronts, Structure]:
     """Fronts of a graph of blocks (symmetric, compressed columns, in a fill-reducing order) of so many unknowns."""
-    order, parent = postordered_tree(pointer, rows)
-    weight = widths[order]
-    supernodes = supernodes_of(pointer, rows, order, parent, weight, WASTE, NARROW)
-    places = np.append(0, np.cumsum(weight))
-    beyond_pointer, beyond_blocks, above = _structures(pointer, rows, order, supernodes)
-    begin = places[supernodes]
-    sizes = np.append(0, np.cumsum(weight[beyond_blocks]))
-    beyond, pivots = np.diff(sizes[beyond_pointer]), np.diff(begin)
-    structure = Structure(order, places, supernodes, beyond_pointer, beyond_blocks)
+    tree = elimination_tree(pointer, rows, widths)
+    weight = widths[tree.order]
+    structure, parent = _structure_of(pointer, rows, tree, weight)
+    places, beyond = structure.places, structure.beyond
+    begin = places[structure.supernodes]
+    sizes = np.append(0, np.cumsum(weight[beyond]))
+    r, k = np.diff(sizes[structure.pointer]), np.diff(begin)
     fronts = Fronts(
-        np.repeat(np.cumsum(widths)[order] - places[1:], weight) + np.arange(places[-1]),
-        begin,
-        beyond,
-        above,
-        np.append(0, np.cumsum((pivots + beyond) * pivots)),
-        np.append(0, np.cumsum(beyond * pivots)),
-        *_runs(structure, above, begin),
+        order=ranges((np.cumsum(widths) - widths)[tree.order], weight),
+        begin=begin,
+        beyond=r,
+        parent=parent,
+        lower=np.append(0, np.cumsum((k + r) * k)),
+        upper=np.append(0, np.cumsum(r * k)),
+        **_runs(structure, parent),
     )
     return fronts, structure
 
@@ -131,126 +162,84 @@ def analyse(indptr: AnyArray, indices: AnyArray) -> tuple[Fronts, Entries]:
     ValueError
         The pattern is not symmetric, or lacks entries of the diagonal.
     """
-    if not is_symmetric(indptr, indices):
-        raise ValueError("the pattern of the matrix must be symmetric, with all of its diagonal")
-    starts = blocks_of(indptr, indices)
-    pointer, rows = block_graph(indptr, indices, starts)
+    starts, pointer, rows = block_graph(indptr, indices)
     fronts, structure = fronts_of(pointer, rows, np.diff(starts))
     return fronts, Entries(starts, pointer, rows, *_targets(pointer, rows, structure, fronts))
 
 
-@Kernel
-def _structures(
-    pointer: IntArray, rows: IntArray, order: IntArray, supernodes: IntArray
-) -> tuple[IntArray, IntArray, IntArray]:
-    """Blocks beyond each supernode that it couples with, ascending, and the supernodes' parents."""
-    n, count = order.size, supernodes.size - 1
-    place, owner = np.empty(n, np.int64), np.empty(n, np.int64)
-    place[order] = np.arange(n)
-    for s in range(count):
-        owner[supernodes[s] : supernodes[s + 1]] = s
-    beyond_pointer, above = np.zeros(count + 1, np.int64), np.full(count, -1, np.int64)
-    head, following = np.full(count, -1, np.int64), np.full(count, -1, np.int64)
-    mark, found = np.full(n, -1, np.int64), np.empty(n, np.int64)
-    beyond = np.empty(4 * n + 64, np.int64)
-    total = 0
-    for s in range(count):
-        last, here = supernodes[s + 1], 0
-        child = head[s]
-        while child != -1:
-            for t in range(beyond_pointer[child], beyond_pointer[child + 1]):
-                i = beyond[t]
-                if i >= last and mark[i] != s:
-                    mark[i], found[here] = s, i
-                    here += 1
-            child = following[child]
-        for j in range(supernodes[s], last):
-            for p in range(pointer[order[j]], pointer[order[j] + 1]):
-                i = place[rows[p]]
-                if i >= last and mark[i] != s:
-                    mark[i], found[here] = s, i
-                    here += 1
-        if total + here > beyond.size:
-            grown = np.empty(2 * (total + here), np.int64)
-            grown[:total] = beyond[:total]
-            beyond = grown
-        beyond[total : total + here] = np.sort(found[:here])
-        if here:
-            above[s] = owner[beyond[total]]
-            following[s] = head[above[s]]
-            head[above[s]] = s
-        total += here
-        beyond_pointer[s + 1] = total
-    return beyond_pointer, beyond[:total].copy(), above
+def _structure_of(pointer: IntArray, rows: IntArray, tree: Tree, weight: IntArray) -> tuple[Structure, IntArray]:
+    """Supernodes with the blocks beyond them, and their parents."""
+    supernodes = supernodes_of(tree, weight, WASTE, NARROW)
+    count, last = supernodes.size - 1, supernodes[1:] - 1
+    beyond_pointer = np.append(0, np.cumsum(tree.blocks[last] - 1))
+    structure = Structure(
+        tree.order, np.append(0, np.cumsum(weight)), supernodes, beyond_pointer, np.empty(beyond_pointer[-1], np.int64)
+    )
+    parent = np.append(structure.owner, -1)[tree.parent[last]]
+    owner = np.empty_like(tree.order)
+    owner[tree.order] = structure.owner
+    _fill_rows(
+        pointer, rows, tree.order, owner, parent, np.full(count, -1), beyond_pointer[:-1].copy(), structure.beyond
+    )
+    return structure, parent
 
 
 @Kernel
-def _runs(structure: Structure, above: IntArray, begin: IntArray) -> tuple[IntArray, IntArray, IntArray, IntArray]:
-    """Runs of rows of each front that stay together in the parent: pointer, place, target, length."""
-    count, blocks, places = above.size, structure.beyond, structure.places
-    pointer = np.zeros(count + 1, np.int64)
-    place, target = np.empty(blocks.size, np.int64), np.empty(blocks.size, np.int64)
-    length = np.empty(blocks.size, np.int64)
-    at = 0
-    for s in range(count):
-        p = above[s]
-        row, position = structure.pointer[p], begin[p + 1] - begin[p]
-        for t in range(structure.pointer[s], structure.pointer[s + 1]):
-            first, size = places[blocks[t]], places[blocks[t] + 1] - places[blocks[t]]
-            if first < begin[p + 1]:
-                to = first - begin[p]
-            else:
-                while blocks[row] != blocks[t]:
-                    position += places[blocks[row] + 1] - places[blocks[row]]
-                    row += 1
-                to = position
-            last = at - 1
-            if (
-                at > pointer[s]
-                and place[last] + length[last] == first
-                and target[last] + length[last] == to
-                and first != begin[p + 1]
-            ):
-                length[last] += size
-            else:
-                place[at], target[at], length[at] = first, to, size
-                at += 1
-        pointer[s + 1] = at
-    return pointer, place[:at].copy(), target[:at].copy(), length[:at].copy()
+def _fill_rows(
+    pointer: IntArray,
+    rows: IntArray,
+    order: IntArray,
+    owner: IntArray,
+    parent: IntArray,
+    mark: IntArray,
+    end: IntArray,
+    beyond: IntArray,
+) -> None:
+    """Append each row of the factor to the supernodes that have entries in it (see `elimination_tree`)."""
+    for i in range(order.size):
+        j = order[i]
+        for p in range(pointer[j], pointer[j + 1]):
+            s = owner[rows[p]]
+            while s < owner[j] and mark[s] != i:
+                mark[s] = i
+                beyond[end[s]] = i
+                end[s] += 1
+                s = parent[s]
 
 
-@Kernel
+def _runs(structure: Structure, parent: IntArray) -> dict[str, IntArray]:
+    """Runs of rows of each front that stay together in the parent."""
+    blocks, places = structure.beyond, structure.places
+    front = np.repeat(np.arange(parent.size), np.diff(structure.pointer))
+    target = structure.position(parent[front], blocks)
+    place, length = places[blocks], np.diff(places)[blocks]
+    pivots_end = places[structure.supernodes[parent[front] + 1]]
+    goes_on = (
+        (front[1:] == front[:-1])
+        & (np.diff(place) == length[:-1])
+        & (np.diff(target) == length[:-1])
+        & (place[1:] != pivots_end[1:])
+    )
+    starts = np.flatnonzero(np.append(True, ~goes_on)[: front.size])
+    return {
+        "run_pointer": np.searchsorted(front[starts], np.arange(parent.size + 1)),
+        "run_place": place[starts],
+        "run_target": target[starts],
+        "run_length": np.add.reduceat(length, starts),
+    }
+
+
 def _targets(
     pointer: IntArray, rows: IntArray, structure: Structure, fronts: Fronts
 ) -> tuple[IntArray, IntArray, IntArray]:
     """Target, row step and column step of every pair of blocks."""
-    order, places, supernodes = structure.order, structure.places, structure.supernodes
-    n = order.size
-    place = np.empty(n, np.int64)
-    place[order] = np.arange(n)
-    target, row_step = np.empty(rows.size, np.int64), np.empty(rows.size, np.int64)
-    column_step, position = np.empty(rows.size, np.int64), np.empty(n, np.int64)
-    for s in range(fronts.parent.size):
-        first, last = supernodes[s], supernodes[s + 1]
-        k, r = fronts.begin[s + 1] - fronts.begin[s], fronts.beyond[s]
-        for j in range(first, last):
-            position[j] = places[j] - places[first]
-        at = k
-        for t in range(structure.pointer[s], structure.pointer[s + 1]):
-            i = structure.beyond[t]
-            position[i] = at
-            at += places[i + 1] - places[i]
-        for j in range(first, last):
-            for p in range(pointer[order[j]], pointer[order[j] + 1]):
-                i = place[rows[p]]
-                if i >= first:
-                    target[p] = fronts.lower[s] + position[j] * (k + r) + position[i]
-                    row_step[p], column_step[p] = 1, k + r
-        for t in range(structure.pointer[s], structure.pointer[s + 1]):
-            j = structure.beyond[t]
-            for p in range(pointer[order[j]], pointer[order[j] + 1]):
-                i = place[rows[p]]
-                if first <= i < last:
-                    target[p] = ~(fronts.upper[s] + position[i] * r + position[j] - k)
-                    row_step[p], column_step[p] = r, 1
-    return target, row_step, column_step
+    place = np.empty_like(structure.order)
+    place[structure.order] = np.arange(place.size)
+    row, column = place[rows], np.repeat(place, np.diff(pointer))
+    owner = structure.owner
+    front = np.minimum(owner[row], owner[column])
+    i, j = structure.position(front, row), structure.position(front, column)
+    k, r = fronts.pivots[front], fronts.beyond[front]
+    upper = j >= k
+    target = np.where(upper, ~(fronts.upper[front] + i * r + j - k), fronts.lower[front] + j * (k + r) + i)
+    return target, np.where(upper, r, 1), np.where(upper, 1, k + r)

@@ -64,7 +64,7 @@ class MultifrontalFactors(ScaledFactors):
         """See `Factorisation`."""
         if self._other is not None:
             return self._other.negative_pivots()
-        return int(elimination.negative_pivots(self._analysis.fronts, self._factors.lower))
+        return elimination.negative_pivots(self._analysis.fronts, self._factors.lower)
 
     def solve_scaled(self, right_side: FloatArray, transposed: bool = False) -> FloatArray:
         """See `ScaledFactors`."""
