@@ -118,22 +118,28 @@ def add_matrices(to: Destination, first: int, K: FloatArray, weight: float, data
     """
     node, component = to.elements.node, to.elements.component
     values, m = len(node), to.elements.nodes.shape[1]
-    rank, place = np.zeros(values, dtype=np.int64), np.zeros(values, dtype=np.int64)
+    free, rank = np.zeros(values, dtype=np.int64), np.zeros(values, dtype=np.int64)
+    place = np.zeros((m, values), dtype=np.int64)
     for e in range(first, min(first + len(K), len(to.elements.nodes))):
-        nodes = to.elements.nodes[e]
+        nodes, count = to.elements.nodes[e], 0
         for l in range(values):
-            held = to.number[nodes[node[l]], component[l]] < 0
-            rank[l] = -1 if held else to.rank[nodes[node[l]], component[l]]
+            if to.number[nodes[node[l]], component[l]] >= 0:
+                free[count], rank[count] = l, to.rank[nodes[node[l]], component[l]]
+                count += 1
         for J in range(m):
-            for l in range(values):
-                place[l] = to.offset[e, J, node[l]] + rank[l]
-            for l in range(values):
-                if node[l] != J or rank[l] < 0:
-                    continue
-                start, row = to.indptr[to.number[nodes[J], component[l]]], K[e - first, l]
+            for k in range(count):
+                place[J, k] = to.offset[e, J, node[free[k]]] + rank[k]
+        for f in range(count):
+            l = free[f]
+            row, places = K[e - first, l], place[node[l]]
+            start = to.indptr[to.number[nodes[node[l]], component[l]]]
+            column = data[start:]
+            if count == values:
                 for k in range(values):
-                    if rank[k] >= 0:
-                        data[start + place[k]] += weight * row[k]
+                    column[places[k]] += weight * row[k]
+            else:
+                for k in range(count):
+                    column[places[k]] += weight * row[free[k]]
 
 
 class Insertion:
