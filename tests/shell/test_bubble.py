@@ -10,7 +10,7 @@ import pytest
 
 from magshell.mesh import rectangle
 from magshell.shell.bubble import hold
-from magshell.shell.element import Layout
+from magshell.shell.element import layout_of
 from magshell.shell.elements import ELEMENTS
 from magshell.shell.geometry import interpolation
 from magshell.shell.shape_functions import bubble, gauss_legendre
@@ -27,7 +27,7 @@ def test_the_hold_over_full_integration():
     shape = interpolation(X, np.broadcast_to([0.0, 0.0, 1.0], X.shape), element, micro_rotation=True)
     amplitude = (shape.enhancement[0, :, :2, -1] / bubble(element.rule.points)[1])[0, 0]
     held = hold(X, element, np.full(1, thickness), np.full(1, shear_modulus))
-    layout = Layout(8, element.rest_nodes, element.stretch_nodes, element.rest_nodes, element.vectors)
+    layout = layout_of(8, element.rest_nodes, element.stretch_nodes, element.rest_nodes, element.vectors)
     of_hold = held_energy(held, 0, 0, layout, (1.0, 0.0, 0.0))
 
     (xi, eta), weights = gauss_legendre(3)[0].T, gauss_legendre(3)[1]

@@ -128,7 +128,7 @@ def copied(tmp_path_factory):
 @pytest.mark.parametrize(
     ("source", "of_kernels", "of_law"),
     [
-        ("shell/unknowns.py", True, False),
+        ("shell/point.py", True, False),
         ("shell/section.py", True, False),
         ("shell/elements/definition.py", True, False),
         ("materials/law.py", True, True),

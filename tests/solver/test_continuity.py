@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as some
 
-from magshell.shell.loops import Stresses
+from magshell.equations.instant import Increment
 from magshell.shell.state import State
 from magshell.solver import critical
 from magshell.solver.constraints import LOAD_WEIGHT, Metric
@@ -30,8 +30,8 @@ def point(
         arc_length=0.0,
         load_factor=load_factor,
         state=state._replace(u=np.array([[*u, 0.0]])),
-        slope=Slope(increment / length, np.zeros_like(state.alpha), slope[2] / length),
-        stresses=Stresses(*[np.zeros(1)] * len(Stresses._fields)),
+        slope=Slope(Increment(increment / length, np.zeros_like(state.alpha)), slope[2] / length),
+        prediction=None,
         negative_pivots=0,
     )
 

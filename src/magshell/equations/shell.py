@@ -149,7 +149,7 @@ class ShellTerm:
         d_alpha = np.einsum("eal,el->ea", filled.gain, nodal.ravel()[self._to.entry])
         if whole:
             d_alpha += filled.offset
-        return -np.ascontiguousarray(np.swapaxes(d_alpha.reshape(-1, 3, modes), 1, 2))
+        return -np.ascontiguousarray(np.swapaxes(d_alpha.reshape(len(d_alpha), 3, modes), 1, 2))
 
     def noise(self) -> FloatArray:
         """See `Term`."""
