@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +16,7 @@ from magshell.equations.instant import STATIC, Increment, Instant, Prediction
 from magshell.equations.loads import LoadTerm
 from magshell.equations.numbering import Numbering, Ordering, columns_of
 from magshell.equations.shell import ShellTerm
-from magshell.equations.term import Term
+from magshell.equations.term import Term, squares_by_kind
 from magshell.model.course import Loading
 from magshell.model.model import Model
 from magshell.model.reference import reference_of_model, stiffest_of
@@ -70,7 +71,7 @@ class Discretisation:
     shell : ShellTerm
     loads : LoadTerm
     terms : sequence of Term
-        Both.
+        Those that there are.
     reference : Reference
         Arrays of the undeformed shell.
     materials : list of Material
@@ -85,7 +86,7 @@ class Discretisation:
         self.reference = reference_of_model(model)
         self.shell = ShellTerm(self.reference, len(self.mesh.points), stiffest_of(model))
         self.loads = LoadTerm(model.applied, model.constraints)
-        self.terms: Sequence[Term] = (self.shell, self.loads)
+        self.terms: Sequence[Term] = (self.shell, self.loads) if model.applied else (self.shell,)
         self.materials = [region.material for region in model.shell.regions]
         self.carried = columns_of(model.shell.carriers)
         self.free = self.carried & ~model.constraints.fixed
@@ -95,7 +96,7 @@ class Discretisation:
         self._insertion = Insertion(self.numbering, model.constraints)
         self.shell.place(self.numbering, model.constraints)
         self.loads.place(self._insertion)
-        self._noise = np.sum([term.noise() for term in self.terms], axis=0)
+        self._noise = _sum(term.noise() for term in self.terms)
 
     @property
     def normals(self) -> FloatArray:
@@ -127,12 +128,12 @@ class Discretisation:
         if insertion is not None:
             insertion.data[:] = 0.0
         parts = [term.evaluate(instant, STATIC, insertion, imposed) for term in self.terms]
-        residual = np.sum([part.residual for part in parts], axis=0)
+        residual = _sum(part.residual for part in parts)
         right_side = np.zeros(self.dofs)
         if tangent:
-            condensed = np.sum([part.condensed for part in parts], axis=0)
+            condensed = _sum(part.condensed for part in parts)
             right_side[self.numbering.equations] = -condensed[self.free]
-        squares = np.sum([part.scale for part in parts], axis=0)
+        squares = _sum(part.scale for part in parts)
         inner = max(part.inner for part in parts)
         matrix = self._insertion.matrix if tangent else None
         return Assembly(matrix, right_side, residual, self._relative(residual, squares, inner))
@@ -144,7 +145,7 @@ class Discretisation:
         nothing imposed.
         """
         direction = np.zeros(self.dofs)
-        change = np.sum([term.load_rate(instant, rate) for term in self.terms], axis=0)
+        change = _sum(term.load_rate(instant, rate) for term in self.terms)
         direction[self.numbering.equations] = -change[self.free]
         if np.any(rate.held):
             moving = self.assemble(instant, self.imposed(rate.held)).right_side
@@ -208,10 +209,14 @@ class Discretisation:
         α has the unit of w (both work on directors) and is measured against the same forces. The forces of u vanish in
         pure bending; they count for no less than the moments over the body's size.
         """
-        free = np.where(self.free, residual, 0.0)
-        norms = np.array([*(np.linalg.norm(free[:, columns]) for columns in COLUMNS.values()), inner])
+        free = residual * self.free
+        norms = np.sqrt([*squares_by_kind(free), inner**2])
         scales = np.sqrt(squares)
         scales[0] = max(scales[0], scales[1] / self.mesh.size, scales[3] / self.mesh.size)
         above = np.maximum(norms - self._noise, 0.0)
         relative = np.divide(above, scales[[0, 1, 2, 3, 1]], out=above.copy(), where=above > 0.0)
         return dict(zip(KINDS, relative.tolist(), strict=True))
+
+
+def _sum(arrays: Iterable[FloatArray]) -> FloatArray:
+    return reduce(np.add, arrays)

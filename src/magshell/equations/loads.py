@@ -10,7 +10,7 @@ from magshell.arrays import FloatArray, IntArray
 from magshell.equations.frames import to_frames
 from magshell.equations.insertion import Insertion
 from magshell.equations.instant import Increment, Instant, Prediction, Weights
-from magshell.equations.term import Contribution
+from magshell.equations.term import Contribution, squares_by_kind
 from magshell.model.course import Loading
 from magshell.model.loads import Applied, Pairs
 from magshell.model.loads.cross import cross_matrix
@@ -65,8 +65,7 @@ class LoadTerm:
         if insertion is not None and self._applied:
             self._insert(instant, weights, insertion, forces)
         residual = -to_frames(self._constraints, forces)
-        scale = np.array([np.sum(residual[:, columns] ** 2) for columns in COLUMNS.values()])
-        return Contribution(residual, residual, scale, 0.0)
+        return Contribution(residual, residual, squares_by_kind(residual), 0.0)
 
     def _insert(self, instant: Instant, weights: Weights, insertion: Insertion, forces: FloatArray) -> None:
         """Add minus the derivative of the forces, and a transport of the couples.

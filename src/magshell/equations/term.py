@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple, Protocol
 
+import numpy as np
+
 from magshell.arrays import FloatArray, IntArray
 from magshell.equations.insertion import Insertion
 from magshell.equations.instant import Increment, Instant, Prediction, Weights
 from magshell.model.course import Loading
 from magshell.shell.state import State
+from magshell.shell.unknowns import COLUMNS
 
 
 class Contribution(NamedTuple):
@@ -75,6 +78,12 @@ class Term(Protocol):
 
     def noise(self) -> FloatArray:
         """Norms (5,) that round-off makes of the residuals of u, w, φ, ω and of what it owns."""
+
+
+def squares_by_kind(nodal: FloatArray) -> FloatArray:
+    """Sums of squares (4,) of the columns (nodes, 10) of u, w, φ and ω."""
+    starts = [columns.start for columns in COLUMNS.values()]
+    return np.add.reduceat(np.einsum("nc,nc->c", nodal, nodal), starts)
 
 
 class InvertedElement(ArithmeticError):

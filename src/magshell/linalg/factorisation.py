@@ -6,6 +6,7 @@ largest entries; unscaled, the pivoting of a solver destroys the elimination ord
 
 from __future__ import annotations
 
+from copy import copy
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -87,7 +88,9 @@ def scaled(matrix: sp.csc_array) -> Scaled:
     asymmetry = _equilibrate(
         matrix.indptr, matrix.indices, matrix.data, data, scale, np.empty_like(scale), matrix.indptr[1:].copy()
     )
-    return Scaled(sp.csc_array((data, matrix.indices, matrix.indptr), shape=matrix.shape), scale, asymmetry)
+    copied = copy(matrix)  # shares the pattern; a new matrix would have it checked again
+    copied.data = data
+    return Scaled(copied, scale, asymmetry)
 
 
 class ScaledFactors:

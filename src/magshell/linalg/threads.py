@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+import threading
 from functools import cache
 from typing import Any
 
@@ -22,15 +21,35 @@ def threads() -> int:
 
 
 @cache
-def _libraries() -> Any:
+def _libraries() -> list[Any]:
+    """The BLAS libraries that are loaded."""
     import scipy.linalg.cython_blas  # noqa: F401
     from threadpoolctl import ThreadpoolController
 
-    return ThreadpoolController()
+    return [library for library in ThreadpoolController().lib_controllers if library.user_api == "blas"]
 
 
-@contextmanager
-def one_blas_thread() -> Iterator[None]:
-    """BLAS computes with the thread that calls it: fronts are small, and sums keep their order."""
-    with _libraries().limit(limits=1, user_api="blas"):
-        yield
+class _OneThread:
+    """Holds the libraries to one thread as long as anybody wants it; the last to leave lets them go."""
+
+    def __init__(self) -> None:
+        self._lock, self._wanted, self._before = threading.Lock(), 0, list[int]()
+
+    def __enter__(self) -> None:
+        with self._lock:
+            if not self._wanted:
+                self._before = [library.get_num_threads() for library in _libraries()]
+                for library in _libraries():
+                    library.set_num_threads(1)
+            self._wanted += 1
+
+    def __exit__(self, *error: object) -> None:
+        with self._lock:
+            self._wanted -= 1
+            if not self._wanted:
+                for library, number in zip(_libraries(), self._before, strict=True):
+                    library.set_num_threads(number)
+
+
+#: With it BLAS computes with the thread that calls it: fronts are small, and sums keep their order.
+one_blas_thread = _OneThread()

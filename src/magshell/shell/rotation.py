@@ -34,12 +34,21 @@ def cross(a: FloatArray, b: FloatArray) -> FloatArray:
     return np.stack([a2 * b3 - a3 * b2, a3 * b1 - a1 * b3, a1 * b2 - a2 * b1], axis=-1)
 
 
+def length(vectors: FloatArray) -> FloatArray:
+    """Lengths (..., 1) of vectors (..., n)."""
+    return np.sqrt(np.einsum("...i,...i->...", vectors, vectors))[..., None]
+
+
 def product(p: FloatArray, q: FloatArray) -> FloatArray:
     """Quaternion product p q, arrays (..., 4): first q, then p."""
-    p0, q0 = p[..., :1], q[..., :1]
-    pv, qv = p[..., 1:], q[..., 1:]
-    scalar = p0 * q0 - np.sum(pv * qv, axis=-1, keepdims=True)
-    return np.concatenate([scalar, p0 * qv + q0 * pv + cross(pv, qv)], axis=-1)
+    p0, p1, p2, p3 = p[..., 0], p[..., 1], p[..., 2], p[..., 3]
+    q0, q1, q2, q3 = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
+    result = np.empty(np.broadcast_shapes(p.shape, q.shape))
+    result[..., 0] = p0 * q0 - p1 * q1 - p2 * q2 - p3 * q3
+    result[..., 1] = p0 * q1 + q0 * p1 + p2 * q3 - p3 * q2
+    result[..., 2] = p0 * q2 + q0 * p2 + p3 * q1 - p1 * q3
+    result[..., 3] = p0 * q3 + q0 * p3 + p1 * q2 - p2 * q1
+    return result
 
 
 def conjugate(q: FloatArray) -> FloatArray:
@@ -50,7 +59,7 @@ def conjugate(q: FloatArray) -> FloatArray:
 def exponential(rotation_vector: FloatArray) -> FloatArray:
     """Unit quaternions (..., 4) of rotation vectors (..., 3), rad, any magnitude."""
     half = 0.5 * np.asarray(rotation_vector)
-    angle = np.linalg.norm(half, axis=-1, keepdims=True)
+    angle = length(half)
     return np.concatenate([np.cos(angle), np.sinc(angle / np.pi) * half], axis=-1)
 
 
@@ -77,7 +86,7 @@ def matrix(q: FloatArray) -> FloatArray:
 def compose(spin: FloatArray, q: FloatArray) -> FloatArray:
     """exp(spin/2) q, normalised: quaternions (..., 4) turned on by spins (..., 3)."""
     turned = product(exponential(spin), q)
-    return np.asarray(turned / np.linalg.norm(turned, axis=-1, keepdims=True))
+    return np.asarray(turned / length(turned))
 
 
 @inline

@@ -8,6 +8,7 @@ met. Unlike one in the load factor it also holds at limit points.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -129,12 +130,47 @@ def crossing(
     track: Sequence[Point], values: Sequence[float], slope: float, wanted: float, longest: float
 ) -> float | None:
     """Least distance ahead, within the longest, at which a scalar takes a value."""
-    distances = longest * np.array([0.25, 0.5, 0.75, 1.0])
-    ahead = [value_at(track, values, slope, distance) - values[-1] for distance in distances]
-    cubic = np.polyfit(distances / longest, np.array(ahead) / (distances / longest), 2)
-    roots = np.roots([*cubic, values[-1] - wanted])
-    inside = [root.real for root in roots if abs(root.imag) < 1e-9 and 0.0 < root.real <= 1.0]
-    return longest * float(min(inside)) if inside else None
+    linear = slope * longest
+    half, whole = (value_at(track, values, slope, part * longest) - values[-1] - part * linear for part in (0.5, 1.0))
+    root = least_root((values[-1] - wanted, linear, 8.0 * half - whole, 2.0 * whole - 8.0 * half))
+    return None if root is None else longest * root
+
+
+def least_root(cubic: tuple[float, float, float, float]) -> float | None:
+    """Least root in (0, 1] of a cubic c_0 + c_1 x + c_2 x² + c_3 x³, by Newton's method between its extremes."""
+    c_0, c_1, c_2, c_3 = cubic
+
+    def value(x: float) -> float:
+        return c_0 + x * (c_1 + x * (c_2 + x * c_3))
+
+    ends = [0.0, *(x for x in _extremes(c_1, c_2, c_3) if 0.0 < x < 1.0), 1.0]
+    for low, high in pairwise(ends):
+        at_low, at_high = value(low), value(high)
+        if at_high == 0.0:
+            return high
+        if at_low * at_high >= 0.0:
+            continue
+        x = low + (high - low) * at_low / (at_low - at_high)
+        for _ in range(100):
+            at = value(x)
+            low, high = (x, high) if at * at_low > 0.0 else (low, x)
+            gradient = c_1 + x * (2.0 * c_2 + 3.0 * x * c_3)
+            step = -at / gradient if gradient else np.inf
+            new = x + step if low < x + step < high else 0.5 * (low + high)
+            if abs(new - x) <= 1e-15 * x:
+                break
+            x = new
+        return x
+    return None
+
+
+def _extremes(c_1: float, c_2: float, c_3: float) -> list[float]:
+    """Where the derivative c_1 + 2 c_2 x + 3 c_3 x² vanishes, rising."""
+    under = c_2**2 - 3.0 * c_3 * c_1
+    if under < 0.0:
+        return []
+    q = -(c_2 + np.copysign(np.sqrt(under), c_2))
+    return sorted(float(top / below) for top, below in ((q, 3.0 * c_3), (c_1, q)) if below)
 
 
 def close_factors(metric: Metric, solution: Solution, along: Direction) -> Factorisation | None:

@@ -152,7 +152,7 @@ def _eliminate(analysis: Analysis, factors: elimination.Factors) -> float:
         finally:
             rooms.put(room)
 
-    with one_blas_thread():
+    with one_blas_thread:
         if workers > 1:
             with ThreadPoolExecutor(workers) as pool:
                 least = [*pool.map(run, schedule.tasks)]
