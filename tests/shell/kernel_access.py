@@ -59,12 +59,13 @@ def energy_gradient_and_hessian(d, e, p, x, B, body=None):
 
 
 @Kernel
-def _hold(held, number, e, layout, v, alpha, vectors, r, K):
-    return hold_vector(held, number, e, layout, v, alpha, vectors, r, K)
+def _hold(held, number, e, layout, v, vectors, r, K):
+    return hold_vector(held, number, e, layout, v, vectors, r, K)
 
 
 def held_energy(held, number, e, layout, alpha):
     """Energy of a held vector (3,) of the undeformed element e."""
     size = 3 * layout.u + 3 * layout.w + layout.phi + 3 * layout.q + 3 * layout.modes
     v, r, K = np.zeros(size + layout.q), np.zeros((size, 2)), np.zeros((size, padded(size)))
-    return _hold(held, number, e, layout, v, np.asarray(alpha, dtype=float), np.zeros((4, 3)), r, K)
+    v[layout.at_q + 4 * layout.q + layout.modes - 1 - number :: layout.modes] = alpha
+    return _hold(held, number, e, layout, v, np.zeros((5, 3)), r, K)

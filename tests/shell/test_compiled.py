@@ -458,16 +458,17 @@ def test_a_law_whose_file_is_gone_is_compiled_without_a_cache(cache, monkeypatch
 
 
 def _refusing(material, U, P, C):
+    energy = _neo_hookean(material, U, P, C)
     if U[0, 0] > 1.0 + 1e-5:
         raise ValueError("the law holds for no such stretch")
-    return _neo_hookean(material, U, P, C)
+    return energy
 
 
 _neo_hookean = numba.extending.register_jitable(neo_hookean._law)
 
 
 class Refusing(MATERIAL):
-    """The neo-Hookean law, which raises an error beyond a small stretch."""
+    """The neo-Hookean law, which raises an error beyond a small stretch, when all is filled."""
 
 
 def _losing(coupling, m, n, B, gradients, forces, tangent):

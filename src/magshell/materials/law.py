@@ -10,6 +10,8 @@ that fills P and C. The couple-stress part is the same for all laws: gamma is th
 Kernels call it through a pointer, with the signature of laws that also have a memory and depend on the temperature:
 
     law(parameters, U, memory, time_step, temperature, P, C, memory_after) -> W.
+
+The first number of `memory_after` is NaN before the call. A law that raises an error leaves it, and the residual is NaN.
 """
 
 from __future__ import annotations
@@ -90,7 +92,9 @@ def _elastic(law: ElasticLaw, cls: Any) -> Callable[..., float]:
     ) -> Any:
         material = cls(*to_fixed_tuple(numba.carray(parameters, (count,)), count))
         U, P, C = numba.carray(U, (3, 3)), numba.carray(P, (3, 3)), numba.carray(C, (3, 3, 3, 3))
-        return compiled(material, U, P, C)
+        energy = compiled(material, U, P, C)
+        numba.carray(memory_after, (1,))[0] = 0.0
+        return energy
 
     return called
 
@@ -99,9 +103,11 @@ def _elastic(law: ElasticLaw, cls: Any) -> Callable[..., float]:
 def _at_points(
     address: int, parameters: FloatArray, U: FloatArray, W: FloatArray, P: FloatArray, C: FloatArray
 ) -> None:
-    memory = np.zeros(1)
+    memory, memory_after = np.zeros(1), np.zeros(1)
     for n in range(len(U)):
-        W[n] = call(address, parameters, U[n], memory, 0.0, 0.0, P[n], C[n], memory)
+        memory_after[0] = np.nan
+        W[n] = call(address, parameters, U[n], memory, 0.0, 0.0, P[n], C[n], memory_after)
+        P[n, 0, 0] += memory_after[0]
 
 
 def evaluate(material: Material, U: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

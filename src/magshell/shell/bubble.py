@@ -85,16 +85,17 @@ def hold_vector(
     e: int,
     layout: Layout,
     v: FloatArray,
-    alpha: FloatArray,
     vectors: FloatArray,
     r: FloatArray,
     K: FloatArray,
 ) -> float:
-    """Add the gradient of W to r[:, 0] and its Hessian to K, for the element's values v and its held vector α (3,).
+    """Add the gradient of W to r[:, 0] and its Hessian to K, for the element's values v.
 
-    Returns W.
+    `vectors` (5, 3) is scratch. Returns W.
     """
-    a, c, T, energy = vectors[:2], vectors[2], vectors[3], 0.0
+    a, c, T, alpha, energy = vectors[:2], vectors[2], vectors[3], vectors[4], 0.0
+    for i in range(3):
+        alpha[i] = v[layout.at_q + 4 * layout.q + (i + 1) * layout.modes - 1 - number]
     for b in range(2):
         c[b] = 0.0
         for i in range(3):

@@ -127,7 +127,7 @@ def fill(
     full = size + rest
     v, T, radial = np.zeros(full), np.zeros((rest, 4, 3)), np.zeros(rest)
     wide = padded(size)
-    scratch, vectors, forces = np.zeros((4, wide)), np.zeros((4, 3)), np.zeros((size, 2))
+    scratch, vectors, forces = np.zeros((4, wide)), np.zeros((5, 3)), np.zeros((size, 2))
     g, H = np.zeros((SIZE, 3)), np.zeros((SIZE, PADDED))
     GH, HG = np.zeros((size, PADDED)), np.zeros((SIZE, wide))
     r_sum, factor = np.zeros(size), np.zeros((3 * modes, 3 * modes + nodal + 1))
@@ -172,8 +172,7 @@ def fill(
             if tangent:
                 add_radial_force(point, layout, w.g, v, radial)
         for number in range(len(body.hold.k)):
-            alpha = state.alpha[e, modes - 1 - number]
-            out.energy[e, INTERNAL] += hold_vector(body.hold, number, e, layout, v, alpha, vectors, forces, Kt)
+            out.energy[e, INTERNAL] += hold_vector(body.hold, number, e, layout, v, vectors, forces, Kt)
         for l in range(size):
             r_sum[l] = forces[l, INTERNAL] + forces[l, MAGNETIC]
             if l < nodal:
@@ -244,6 +243,6 @@ def predict_stresses(body: Body, state: State, increment: FloatArray, d_alpha: F
 
 
 def are_compiled(material: type, coupling: type) -> bool:
-    """Whether all that a solve compiles waits in the cache for these laws."""
+    """Whether the large kernels, and these laws, wait in the cache."""
     made = (fill, predict_stresses, materials[material], couplings[coupling])
     return all(one.is_compiled() for one in made)

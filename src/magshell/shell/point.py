@@ -75,6 +75,7 @@ WORKSPACE = np.dtype(
         ("forces", float, (WORK + 1,)),
         ("work_tangent", float, (WORK, WORK)),
         ("memory", float, (1,)),
+        ("memory_after", float, (1,)),
         ("K_g", float, (81,)),
         ("K_gω", float, (3, 3, 3)),
         ("H_gω", float, (Q, 3)),

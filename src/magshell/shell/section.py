@@ -184,11 +184,11 @@ def _mix(w: Record, S_mixed: FloatArray) -> None:
 @inline
 def _stress(w: Record, laws: Laws, material: int) -> float:
     """Fill P and C; returns the strain energy per volume. A law that raises an error leaves NaN."""
-    w.P[0, 0] = np.nan
-    parameters = laws.material_parameters[material]
-    address = laws.materials[material]
-    energy: float = call(address, parameters, w.U, w.memory, 0.0, 0.0, w.P, w.C, w.memory)
-    return energy
+    w.memory_after[0] = np.nan
+    parameters, address = laws.material_parameters[material], laws.materials[material]
+    energy: float = call(address, parameters, w.U, w.memory, 0.0, 0.0, w.P, w.C, w.memory_after)
+    w.P[0, 0] += w.memory_after[0]
+    return energy + w.memory_after[0]
 
 
 @inline
