@@ -65,8 +65,19 @@ def laws() -> list[type]:
     return list(callbacks)
 
 
-def material_law(law: ElasticLaw) -> Callable[[AnyMaterial], AnyMaterial]:
-    """Register a NamedTuple class of parameters with its function `law(material, U, P, C) -> W`."""
+def material_law(law: ElasticLaw | None = None, *more: Any, **named: Any) -> Callable[[AnyMaterial], AnyMaterial]:
+    """Register a NamedTuple class of parameters with its function `law(material, U, P, C) -> W`.
+
+    Raises
+    ------
+    TypeError
+        It is not given one function: earlier versions took two.
+    """
+    if law is None or more or named:
+        raise TypeError(
+            "material_law takes one function, law(material, U, P, C), that fills the stress P and the tangent C and "
+            "returns the energy: write @material_law(law) in place of @material_law(energy=..., stress=...)"
+        )
 
     def register(cls: AnyMaterial) -> AnyMaterial:
         callbacks[cls] = Callback(_elastic(law, cls), "pppddppp", cls, (law, material_law))
