@@ -153,8 +153,8 @@ def test_a_material_law(follow: Callable, used: Callable) -> None:
     assert re.search("law +quadratic", said)
     # The volumetric energies differ by a third power of J - 1.
     plain = tip_of(STRIP)
-    assert tip(path) == pytest.approx(plain, rel=1e-4, abs=1e-12)
-    assert not np.array_equal(tip(path), plain)
+    off = np.linalg.norm(tip(path) - plain) / np.linalg.norm(plain)
+    assert 1e-12 < off < 1e-5, off
 
 
 def test_a_coupling_law(follow: Callable, used: Callable) -> None:
@@ -171,7 +171,7 @@ def test_a_coupling_law(follow: Callable, used: Callable) -> None:
     assert energy == pytest.approx(-(0.7 * m + 0.3 * n) @ B / 0.7, rel=1e-12)
     assert slope(lambda t: at(t)[0]) == pytest.approx(forces @ along, rel=1e-9)
     assert curvature(lambda t: at(t)[0]) == pytest.approx(along @ tangent @ along, rel=1e-6)
-    np.testing.assert_array_equal(tangent, tangent.T)
+    np.testing.assert_allclose(tangent, tangent.T, rtol=0.0, atol=1e-15)
     field = table_of(STRIP, "field")
     said, path = used(STRIP.replace(field, block("Add a coupling law", "toml") + "\n"))
     assert re.search("coupling law +shared", said)
