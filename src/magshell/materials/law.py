@@ -11,7 +11,8 @@ Kernels call it through a pointer, with the signature of laws that also have a m
 
     law(parameters, U, memory, time_step, temperature, P, C, memory_after) -> W.
 
-The first number of `memory_after` is NaN before the call. A law that raises an error leaves it, and the residual is NaN.
+The first number of `memory_after` is NaN before the call. A law that raises an error leaves it, and the residual is
+NaN.
 """
 
 from __future__ import annotations
