@@ -1,6 +1,7 @@
 """Elements per second of one core: residual, and residual with the condensed tangent; share of the dgemm peak.
 
 python benchmarks/kernels.py
+python benchmarks/kernels.py --compilation     what the first solve on a machine compiles, and a further law, CPU s
 """
 
 from __future__ import annotations
@@ -9,12 +10,23 @@ import os
 
 os.environ.update(OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1", OMP_NUM_THREADS="1")
 
+import argparse
+import importlib
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
 import time
 from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 from arm import arm
 
+import magshell as ms
+from magshell import kernel_cache, materials
 from magshell.equations.discretisation import Discretisation
 from magshell.equations.instant import Instant
 from magshell.linalg import nested_dissection
@@ -73,8 +85,67 @@ def measure(element: ElementType) -> None:
     )
 
 
+def solve(material: str, coupling: str) -> None:
+    """Solve a strip with two laws, each a "module:class"; print CPU seconds of what is compiled, by name, as JSON."""
+    spent: dict[str, float] = {}
+    load, save = kernel_cache.Store.load_overload, kernel_cache.Store.save_overload
+
+    def missed(store: kernel_cache.Store, *arguments: object) -> object:
+        found = load(store, *arguments)
+        if found is None:
+            spent[store._shown] = spent.get(store._shown, 0.0) - time.process_time()
+        return found
+
+    def compiled(store: kernel_cache.Store, *arguments: object) -> None:
+        spent[store._shown] += time.process_time()
+        save(store, *arguments)
+
+    kernel_cache.Store.load_overload, kernel_cache.Store.save_overload = missed, compiled
+    problem = ms.problem.load("strip-10")
+    model = problem.model
+    own, field = (
+        getattr(importlib.import_module(name.split(":")[0]), name.split(":")[1]) for name in (material, coupling)
+    )
+    shell = replace(model.shell, material=own(*model.shell.material[:4]))
+    ms.solve(replace(model, shell=shell, coupling=field()), problem.settings)
+    print(json.dumps({"compiled": spent, "total": time.process_time()}))
+
+
+def compilation() -> None:
+    """Print what is compiled in fresh processes that share a cache, empty before the first."""
+    with tempfile.TemporaryDirectory() as folder:
+        shutil.copy(str(materials.__path__[0]) + "/neo_hookean.py", Path(folder) / "users_law.py")
+        found = os.environ.get("PYTHONPATH", "")
+        environment = {**os.environ, "NUMBA_CACHE_DIR": f"{folder}/cache", "PYTHONPATH": f"{folder}{os.pathsep}{found}"}
+        neo_hookean, couple = "magshell.materials:MicropolarNeoHookean", "magshell.magnetics:MicropolarCouple"
+        cases = {
+            "the first solve on a machine": (neo_hookean, couple),
+            "the same again": (neo_hookean, couple),
+            "another material law": ("magshell.materials:MicropolarMooneyRivlin", couple),
+            "another coupling law": (neo_hookean, "magshell.magnetics:MicroRotationEnergy"),
+            "a material law in a user's file": ("users_law:MicropolarNeoHookean", couple),
+        }
+        for name, laws in cases.items():
+            command = [sys.executable, __file__, "--solve", *laws]
+            done = json.loads(subprocess.check_output(command, env=environment))
+            spent = done["compiled"]
+            print(f"{name}: {sum(spent.values()):.1f} CPU s compiling, {done['total']:.1f} in all", flush=True)
+            for shown, seconds in sorted(spent.items(), key=lambda item: -item[1]):
+                print(f"    {seconds:5.2f}  {shown}")
+
+
 def main() -> None:
-    """Print a line per element type."""
+    """Print a line per element type, or per solve."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--compilation", action="store_true")
+    parser.add_argument("--solve", nargs=2, metavar=("MATERIAL", "COUPLING"), help=argparse.SUPPRESS)
+    given = parser.parse_args()
+    if given.solve:
+        solve(*given.solve)
+        return
+    if given.compilation:
+        compilation()
+        return
     print(f"elements per second on one core; dgemm peak {dgemm_peak() / 1e9:.1f} Gflop/s")
     for element in ELEMENTS.values():
         measure(element)

@@ -19,7 +19,7 @@ from numba.extending import intrinsic
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.files import lock
-from magshell.kernel_cache import Store, digest, log
+from magshell.kernel_cache import WAITING, Store, digest, log
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -61,7 +61,7 @@ class _Kept:
                     store.folder.mkdir(parents=True, exist_ok=True)
                     file = until.enter_context(open(store.folder / f"{store.name}.lock", "w"))
                     if not lock(file):
-                        log.info("waiting for another process that compiles %s ...", self.shown)
+                        log.info(WAITING, self.shown)
                         lock(file, wait=True)
             yield
 

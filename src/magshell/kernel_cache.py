@@ -27,6 +27,11 @@ from magshell.files import write_atomically
 
 log = logging.getLogger("magshell.kernels")
 
+# Messages, one for each function. Displays show FIRST_USE in place of them while the large kernels are missing.
+COMPILING = "compiling %s ..."
+WAITING = "waiting for another process that compiles %s ..."
+FIRST_USE = "compiling the kernels for the first use of this version (about half a minute, once) ..."
+
 PACKAGE = "magshell"
 SUFFIX = ".kernel"
 _CHECKSUM = hashlib.sha256
@@ -159,7 +164,7 @@ class Store:
             found = self._read(self.folder, self._file(self.folder, signature, context.codegen()))
         if found is not None:
             return CompileResult._rebuild(context, *found)
-        log.info("compiling %s ...", self._shown)
+        log.info(COMPILING, self._shown)
         return None
 
     def save_overload(self, signature: Any, compiled: Any) -> None:

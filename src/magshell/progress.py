@@ -12,7 +12,9 @@ import numpy as np
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
+from magshell.kernel_cache import COMPILING, FIRST_USE, WAITING, log
 from magshell.linalg import make_solver
+from magshell.shell.loops import are_compiled
 from magshell.solver.events import Observer
 from magshell.units import FLUX_DENSITY, show
 
@@ -26,11 +28,16 @@ if TYPE_CHECKING:
 
 
 class KernelMessages(logging.Handler):
-    """What compilation and its cache have to say, as lines of a display."""
+    """What compilation and its cache have to say, as lines of a display.
+
+    A first use compiles some fifteen functions. One line at its start says what is waited for, and how long; later
+    ones say that a further law is compiled.
+    """
 
     def __init__(self, line: Callable[..., None]) -> None:
         super().__init__()
-        self._line, self._logger = line, logging.getLogger("magshell.kernels")
+        self._line, self._logger = line, log
+        self._first_use = False
 
     def listen(self) -> None:
         """Begin; messages go nowhere else meanwhile."""
@@ -48,8 +55,11 @@ class KernelMessages(logging.Handler):
         """Show a message."""
         if record.levelno >= logging.WARNING:
             self._line(f"warning: {record.getMessage()}", style="yellow")
-        else:
+        elif record.msg not in (COMPILING, WAITING):
             self._line(record.getMessage())
+        elif not self._first_use:
+            self._first_use = not are_compiled()
+            self._line(FIRST_USE if self._first_use else f"{record.getMessage()[:-4]} (some seconds, once) ...")
 
 
 class ProgressDisplay(Observer):

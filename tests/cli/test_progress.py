@@ -12,6 +12,7 @@ from rich.console import Console
 from solver.arches import arch, to_the_crown_at
 
 import magshell as ms
+from magshell.kernel_cache import COMPILING, FIRST_USE, WAITING, log
 from magshell.progress import ProgressDisplay
 from magshell.solver import Settings
 
@@ -22,6 +23,33 @@ def said(model: ms.Model) -> tuple[ms.Path, list[str]]:
     with ProgressDisplay(Console(file=text, width=200, highlight=False, markup=False)) as display:
         path = ms.solve(model, observers=[display])
     return path, text.getvalue().splitlines()
+
+
+@pytest.mark.parametrize("waits", [False, True])
+def test_a_first_use_is_told_by_one_line(monkeypatch: pytest.MonkeyPatch, waits: bool) -> None:
+    """At its start: what is waited for, and how long, whatever comes first. Warnings are shown as ever."""
+    monkeypatch.setattr("magshell.progress.are_compiled", lambda: False)
+    text = io.StringIO()
+    with ProgressDisplay(Console(file=text, width=200, highlight=False, markup=False)):
+        log.info(WAITING if waits else COMPILING, "the law Ogden")
+        monkeypatch.setattr("magshell.progress.are_compiled", lambda: True)
+        for name in ("fill", "eliminate"):
+            log.info(COMPILING, f"the kernel {name}")
+        log.warning("the folder is full")
+    assert text.getvalue().splitlines() == [FIRST_USE, "warning: the folder is full"]
+    assert re.search("about half a minute, once", FIRST_USE)
+
+
+def test_a_further_law_is_told_by_its_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("magshell.progress.are_compiled", lambda: True)
+    text = io.StringIO()
+    with ProgressDisplay(Console(file=text, width=200, highlight=False, markup=False)):
+        log.info(COMPILING, "the law Ogden")
+        log.info(WAITING, "the law Field")
+    assert text.getvalue().splitlines() == [
+        "compiling the law Ogden (some seconds, once) ...",
+        "waiting for another process that compiles the law Field (some seconds, once) ...",
+    ]
 
 
 def test_one_stage() -> None:

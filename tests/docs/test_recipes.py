@@ -7,6 +7,7 @@ import pathlib
 import re
 import sys
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Annotated, ClassVar, NamedTuple
 
 import numpy as np
@@ -18,8 +19,10 @@ from magshell import cli
 from magshell.evaluation.outputs import OUTPUTS
 from magshell.keys import Key
 from magshell.magnetics import COUPLINGS
+from magshell.magnetics import law as coupling_laws
 from magshell.magnetics.remanence import REMANENCES
 from magshell.materials import MATERIALS, keys_of
+from magshell.materials import law as material_laws
 from magshell.model.loads import LOADS
 from magshell.model.supports import SUPPORTS
 from magshell.output import rendering
@@ -31,9 +34,8 @@ from magshell.shell.elements import ELEMENTS
 
 LAYOUT = (pathlib.Path(__file__).parents[2] / "docs" / "layout.md").read_text()
 RECIPES = dict(re.findall(r"^## (Add .+?)\n(.*?)(?=^## |\Z)", LAYOUT, re.MULTILINE | re.DOTALL))
-REGISTRIES = (COUPLINGS, ELEMENTS, LOADS, MATERIALS, OUTPUTS, REMANENCES, SUPPORTS)
-# A law is compiled for most of a minute: `tests/materials` solves with one of a user's own file.
-ELSEWHERE = {"Add a material law"}
+LAWS = (material_laws.callbacks, coupling_laws.callbacks)
+REGISTRIES = (COUPLINGS, ELEMENTS, LOADS, MATERIALS, OUTPUTS, REMANENCES, SUPPORTS, *LAWS)
 
 
 def can_draw() -> bool:
@@ -58,10 +60,13 @@ def block(recipe: str, language: str) -> str:
 def registries() -> Iterator[None]:
     """What a recipe registers is forgotten afterwards."""
     before = [dict(registry) for registry in REGISTRIES]
+    conservative = set(coupling_laws._conservative)
     yield
     for registry, entries in zip(REGISTRIES, before, strict=True):
         registry.clear()
         registry.update(entries)
+    coupling_laws._conservative.clear()
+    coupling_laws._conservative.update(conservative)
 
 
 @pytest.fixture
@@ -110,7 +115,93 @@ def tip_of(text: str) -> np.ndarray:
 def test_every_recipe_with_a_program_is_here() -> None:
     source = pathlib.Path(__file__).read_text()
     programs = {name for name, text in RECIPES.items() if "```python" in text}
-    assert programs - ELSEWHERE == {name for name in RECIPES if f'follow("{name}")' in source}
+    assert programs == {name for name in RECIPES if f'follow("{name}")' in source}
+
+
+def table_of(text: str, name: str) -> str:
+    """A table of a problem file."""
+    found = re.search(rf"^\[{name}\]\n.*?(?=^\[)", text, re.MULTILINE | re.DOTALL)
+    assert found is not None
+    return found[0]
+
+
+def slope(function: Callable[[float], np.ndarray], step: float = 1e-4) -> np.ndarray:
+    """Derivative at zero, by differences of fourth order."""
+    return (8.0 * (function(step) - function(-step)) - (function(2.0 * step) - function(-2.0 * step))) / (12.0 * step)
+
+
+def curvature(function: Callable[[float], np.ndarray], step: float = 1e-3) -> np.ndarray:
+    """Second derivative at zero, of a function that is quadratic."""
+    return (function(step) - 2.0 * function(0.0) + function(-step)) / step**2
+
+
+def test_a_material_law(follow: Callable, used: Callable) -> None:
+    law = follow("Add a material law").MicropolarQuadratic(1.0, 1.7, 0.3, 0.2)
+    rng = np.random.default_rng(0)
+    U, along = np.eye(3) + 0.2 * rng.normal(size=(3, 3)), rng.normal(size=(3, 3))
+
+    def at(t: float) -> tuple[np.ndarray, ...]:
+        return material_laws.evaluate(law, U + t * along)
+
+    energy, P, C = at(0.0)
+    J = np.linalg.det(U)
+    expected = 0.65 * np.sum(U * U) - 0.15 * np.sum(U * U.T) - np.log(J) + 0.85 * (J - 1.0) ** 2 - 1.5
+    assert energy == pytest.approx(expected, rel=1e-12)
+    assert slope(lambda t: at(t)[0]) == pytest.approx(np.sum(P * along), rel=1e-9)
+    np.testing.assert_allclose(slope(lambda t: at(t)[1]), np.einsum("pjql,ql->pj", C, along), rtol=0.0, atol=1e-8)
+    said, path = used(STRIP.replace(table_of(STRIP, "material"), block("Add a material law", "toml") + "\n"))
+    assert re.search("law +quadratic", said)
+    # The volumetric energies differ by a third power of J - 1.
+    plain = tip_of(STRIP)
+    off = np.linalg.norm(tip(path) - plain) / np.linalg.norm(plain)
+    assert 1e-12 < off < 1e-5, off
+
+
+def test_a_coupling_law(follow: Callable, used: Callable) -> None:
+    shared = follow("Add a coupling law").SharedEnergy
+    law, rng = shared(vacuum_permeability=0.7, share=0.3), np.random.default_rng(0)
+    m, n, B, dm, spin = rng.normal(size=(5, 3))
+    along = np.concatenate([dm, spin, np.zeros(3)])
+
+    def at(t: float) -> tuple[np.ndarray, ...]:
+        turned = n + t * np.cross(spin, n) + 0.5 * t**2 * np.cross(spin, np.cross(spin, n))
+        return coupling_laws.evaluate(law, m + t * dm, turned, B)
+
+    energy, forces, tangent = at(0.0)
+    assert energy == pytest.approx(-(0.7 * m + 0.3 * n) @ B / 0.7, rel=1e-12)
+    assert slope(lambda t: at(t)[0]) == pytest.approx(forces @ along, rel=1e-9)
+    assert curvature(lambda t: at(t)[0]) == pytest.approx(along @ tangent @ along, rel=1e-6)
+    np.testing.assert_allclose(tangent, tangent.T, rtol=0.0, atol=1e-15)
+    field = table_of(STRIP, "field")
+    said, path = used(STRIP.replace(field, block("Add a coupling law", "toml") + "\n"))
+    assert re.search("coupling law +shared", said)
+    first, second = (
+        tip_of(STRIP.replace(field, f'[field]\nflux_density = [0, 0, "2 mT"]\ncoupling = "{name}"\n'))
+        for name in ("micro-rotation", "deformation-gradient")
+    )
+    # Half of each is about half way between the two laws; the whole of one is that law.
+    assert abs(tip(path)[2] - 0.5 * (first + second)[2]) < 0.2 * abs(first - second)[2]
+    whole = ms.solve(replace(path.model, coupling=shared(share=1.0)))
+    assert tip(whole) == pytest.approx(first, rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize("former", [{"energy": len, "stress": len}, {"law": len, "stress": len}, {}])
+def test_the_former_way_to_register_a_material_law_says_what_to_write(former: dict[str, Callable]) -> None:
+    with pytest.raises(TypeError, match=r"takes one function, law\(material, U, P, C\).* write @material_law\(law\)"):
+        material_laws.material_law(**former)
+
+
+@pytest.mark.parametrize("former", [{"forces": len, "energy": len}, {"forces": len}, {"law": len}, {}])
+def test_the_former_way_to_register_a_coupling_law_says_what_to_write(former: dict[str, Callable]) -> None:
+    with pytest.raises(TypeError, match=r"law\(coupling, m, n, .* write @coupling_law\(law, has_energy=True\)"):
+        coupling_laws.coupling_law(**former)
+
+
+def test_former_laws_by_position_are_refused() -> None:
+    with pytest.raises(TypeError, match="takes one function"):
+        material_laws.material_law(len, len)
+    with pytest.raises(TypeError, match="takes one function"):
+        coupling_laws.coupling_law(len, len)
 
 
 def test_a_load(follow: Callable, used: Callable, tmp_path: pathlib.Path) -> None:

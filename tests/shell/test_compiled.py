@@ -131,7 +131,7 @@ def copied(tmp_path_factory):
         ("shell/point.py", True, False),
         ("shell/section.py", True, False),
         ("shell/elements/definition.py", True, False),
-        ("materials/law.py", True, True),
+        ("materials/law.py", False, True),
         ("magnetics/law.py", True, False),
         ("compiled.py", True, True),
         ("materials/tensors.py", True, True),

@@ -33,18 +33,6 @@ def test_every_combination_the_last_fastest() -> None:
     assert len({cell.source.text for cell in found}) == 4
 
 
-def test_laws_are_those_of_the_cell() -> None:
-    found = cells(
-        "material.law=micropolar-neo-hookean,micropolar-mooney-rivlin", "field.coupling=couple,micro-rotation"
-    )
-    assert [tuple(law.__name__ for law in cell.laws) for cell in found] == [
-        ("MicropolarNeoHookean", "MicropolarCouple"),
-        ("MicropolarNeoHookean", "MicroRotationEnergy"),
-        ("MicropolarMooneyRivlin", "MicropolarCouple"),
-        ("MicropolarMooneyRivlin", "MicroRotationEnergy"),
-    ]
-
-
 def test_a_cell_in_which_nothing_acts_is_undeformed() -> None:
     assert [cell.undeformed for cell in cells("field.flux_density=0 mT:2 mT:3")] == [True, False, False]
     assert [cell.undeformed for cell in cells("remanence[0].vector=0,1 mT")] == [True, False]

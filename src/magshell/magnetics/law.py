@@ -57,8 +57,22 @@ def is_conservative(coupling: Coupling) -> bool:
     return type(coupling) in _conservative
 
 
-def coupling_law(law: CouplingLaw, has_energy: bool) -> Callable[[AnyCoupling], AnyCoupling]:
-    """Register a NamedTuple class of parameters with its function; a law without energy is not conservative."""
+def coupling_law(
+    law: CouplingLaw | None = None, has_energy: bool | None = None, **named: Any
+) -> Callable[[AnyCoupling], AnyCoupling]:
+    """Register a NamedTuple class of parameters with its function; a law without energy is not conservative.
+
+    Raises
+    ------
+    TypeError
+        It is not given one function (earlier versions took two), or not told whether there is an energy.
+    """
+    if law is None or named or not isinstance(has_energy, bool):
+        raise TypeError(
+            "coupling_law takes one function, law(coupling, m, n, B, gradients, forces, tangent), that adds to forces "
+            "and tangent and returns the energy: write @coupling_law(law, has_energy=True) (False, if it has none) in "
+            "place of @coupling_law(forces=..., energy=...)"
+        )
 
     def register(cls: AnyCoupling) -> AnyCoupling:
         callbacks[cls] = Callback(_called(law, cls), "ppppppp", cls, (law, coupling_law))

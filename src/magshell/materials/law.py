@@ -11,7 +11,8 @@ Kernels call it through a pointer, with the signature of laws that also have a m
 
     law(parameters, U, memory, time_step, temperature, P, C, memory_after) -> W.
 
-The first number of `memory_after` is NaN before the call; a law that raises an error leaves it, and so do residuals.
+The first number of `memory_after` is NaN before the call. A law that raises an error leaves it, and the residual is
+NaN.
 """
 
 from __future__ import annotations
@@ -65,8 +66,19 @@ def laws() -> list[type]:
     return list(callbacks)
 
 
-def material_law(law: ElasticLaw) -> Callable[[AnyMaterial], AnyMaterial]:
-    """Register a NamedTuple class of parameters with its function `law(material, U, P, C) -> W`."""
+def material_law(law: ElasticLaw | None = None, *more: Any, **named: Any) -> Callable[[AnyMaterial], AnyMaterial]:
+    """Register a NamedTuple class of parameters with its function `law(material, U, P, C) -> W`.
+
+    Raises
+    ------
+    TypeError
+        It is not given one function: earlier versions took two.
+    """
+    if law is None or more or named:
+        raise TypeError(
+            "material_law takes one function, law(material, U, P, C), that fills the stress P and the tangent C and "
+            "returns the energy: write @material_law(law) in place of @material_law(energy=..., stress=...)"
+        )
 
     def register(cls: AnyMaterial) -> AnyMaterial:
         callbacks[cls] = Callback(_elastic(law, cls), "pppddppp", cls, (law, material_law))

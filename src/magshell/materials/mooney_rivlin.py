@@ -33,9 +33,15 @@ def _law(material: MicropolarMooneyRivlin, U: FloatArray, P: FloatArray, C: Floa
     mu1 = material.shear_modulus - mu2
     bulk = material.lame_lambda - 2.0 * mu2
     V, J = inverse_transpose(U)
-    right, left = U.T @ U, U @ U.T
+    right, left, cubic = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
+    for i in range(3):
+        for k in range(3):
+            right[i, k] = U[0, i] * U[0, k] + U[1, i] * U[1, k] + U[2, i] * U[2, k]
+            left[i, k] = U[i, 0] * U[k, 0] + U[i, 1] * U[k, 1] + U[i, 2] * U[k, 2]
+    for i in range(3):
+        for k in range(3):
+            cubic[i, k] = U[i, 0] * right[0, k] + U[i, 1] * right[1, k] + U[i, 2] * right[2, k]
     I1 = right[0, 0] + right[1, 1] + right[2, 2]
-    cubic = U @ right
     pressure = mu1 + 2.0 * mu2 - 0.5 * bulk * (J**2 - 1.0)
     squares, skew = 0.0, 0.0
     for p in range(3):

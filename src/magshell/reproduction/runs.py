@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from magshell.equations.discretisation import Discretisation
 from magshell.errors import InputError
-from magshell.kernel_cache import log
+from magshell.kernel_cache import FIRST_USE, log
 from magshell.linalg import nested_dissection
 from magshell.problem.building import build
 from magshell.processes import cores, interrupts_wait
@@ -73,9 +73,8 @@ def solve_all(
     Outcome
     """
     problems = {name: build(file, name) for name, file in files.items()}
-    laws = {(type(problem.model.shell.material), type(problem.model.coupling)) for problem in problems.values()}
-    if not all(are_compiled(*pair) for pair in laws):
-        log.info("compiling the kernels for the first use of this version (about a minute) ...")
+    if not are_compiled():
+        log.info(FIRST_USE)
     by_size = sorted(problems, key=lambda name: len(problems[name].model.shell.mesh.elements))
     context = multiprocessing.get_context("spawn")
     messages, stop = context.Queue(), context.Event()

@@ -9,6 +9,7 @@ from types import TracebackType
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
+from magshell.kernel_cache import FIRST_USE
 from magshell.sweep.grid import Cell
 from magshell.sweep.outcomes import Outcome
 
@@ -60,7 +61,7 @@ class Display:
 
     def compiling(self) -> None:
         """The cell that runs alone has its kernels compiled."""
-        self._line("compiling the kernels for the first use of this version (about a minute) ...")
+        self._line(FIRST_USE)
 
     def running(self, count: int) -> None:
         """So many cells are being solved."""

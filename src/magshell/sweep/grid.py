@@ -32,8 +32,6 @@ class Cell:
     source : Source
         The problem file with these values.
     probes : tuple of str
-    laws : tuple of type
-        Of material and coupling: what the kernels are compiled for.
     undeformed : bool
         Nothing acts on the shell, so there is nothing to solve.
     broken : tuple of str
@@ -45,7 +43,6 @@ class Cell:
     label: str
     source: Source
     probes: tuple[str, ...]
-    laws: tuple[type, ...] = ()
     undeformed: bool = False
     broken: tuple[str, ...] = ()
 
@@ -112,7 +109,7 @@ def _cell(number: int, words: str, changes: dict[str, Value], source: Source) ->
         model = build(file, *found).model
     except NothingLoads:
         return replace(cell, undeformed=True)
-    return replace(cell, laws=(type(model.shell.material), type(model.coupling)), broken=tuple(symmetry.broken(model)))
+    return replace(cell, broken=tuple(symmetry.broken(model)))
 
 
 def _lines(faults: dict[str, list[str]], count: int, name: str, what: str = "errors") -> list[str]:

@@ -47,6 +47,8 @@ def sweep(
     OSError
         The disk refuses; the message names the file.
     """
+    from magshell.shell.loops import are_compiled
+
     outcomes = {cell.number: undeformed(cell) for cell in cells if cell.undeformed}
     for cell in cells:
         if not cell.undeformed and (found := outcome_in(folder.cell(cell.name))).converged:
@@ -57,11 +59,11 @@ def sweep(
     display.begin(len(cells), outcomes)
     missing = [cell for cell in cells if cell.number not in outcomes]
     run = _Run(folder, workers, display)
-    ahead, others = _compiling_first(missing)
-    if ahead:
+    ahead = 0 if are_compiled() else 1  # others would only wait for it
+    if missing[:ahead]:
         display.compiling()
     try:
-        for group in (*([cell] for cell in ahead), others):
+        for group in (missing[:ahead], missing[ahead:]):
             for number, outcome in run.solve(group):
                 outcomes[number] = outcome
                 write_table(folder.table, settings, cells, outcomes)
@@ -75,15 +77,6 @@ def sweep(
         workers.close()
         folder.stop.unlink(missing_ok=True)
     return outcomes
-
-
-def _compiling_first(cells: Sequence[Cell]) -> tuple[list[Cell], list[Cell]]:
-    """The first cell of each pair of laws that kernels must be compiled for, and the other cells."""
-    from magshell.shell.loops import are_compiled
-
-    first = {cell.laws: cell for cell in reversed(cells) if not are_compiled(*cell.laws)}
-    ahead = [cell for cell in cells if first.get(cell.laws) is cell]
-    return ahead, [cell for cell in cells if cell not in ahead]
 
 
 class _Run:
