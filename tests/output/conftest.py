@@ -13,10 +13,12 @@ from magshell.magnetics.field import UniformField
 from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.materials import MicropolarNeoHookean
 from magshell.mesh import cylinder
+from magshell.model.course import Loading
 from magshell.output import rendering
 
 RADIUS, LENGTH = 10e-3, 16e-3
 PROBES = {"tip": (LENGTH, 0, RADIUS), 'edge, "low"': (LENGTH, RADIUS, 0)}
+NOTHING = Loading(np.zeros(3), np.zeros(0), np.zeros((1, 10)))
 LOADS = (0.0, 0.1, 0.3, 0.6, 1.0)
 
 
@@ -82,7 +84,9 @@ class FakePath:
             coupling=MicropolarCouple(),
             shell=SimpleNamespace(material=MicropolarNeoHookean(135e3, 3.25e6, 13.5e3, 9e-5), thickness=0.9e-3),
             probe_nodes={name: mesh.node_at(position) for name, position in probes.items()},
-            course=lambda stage: SimpleNamespace(at=lambda load_factor: None),
+            course=lambda stage: SimpleNamespace(
+                at=lambda load_factor: Loading(np.zeros(3), np.zeros(0), np.zeros((1, 10)))
+            ),
         )
         self.discretisation = FakeDiscretisation(self.model, mesh)
         self.critical_points, self.converged, self.reason = [], True, "the end of the path is reached"

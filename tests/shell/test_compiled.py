@@ -26,7 +26,7 @@ from solver.models import rubber, strip
 
 import magshell as ms
 from magshell import compiled, kernel_cache
-from magshell.equations import insertion
+from magshell.equations import scatter
 from magshell.equations.instant import Instant
 from magshell.kernel_cache import digest, sources
 from magshell.magnetics import law as coupling_laws
@@ -138,7 +138,7 @@ def copied(tmp_path_factory):
         ("materials/neo_hookean.py", False, True),
         ("materials/mooney_rivlin.py", False, False),
         ("magnetics/micropolar_couple.py", False, False),
-        ("equations/insertion.py", False, False),
+        ("equations/scatter.py", False, False),
         ("solver/newton.py", False, False),
         ("output/vtu.py", False, False),
     ],
@@ -155,7 +155,7 @@ def test_an_edit_of_what_it_is_made_of_changes_the_digest(copied, source, of_ker
 
 @pytest.mark.parametrize(
     "module",
-    [loops, insertion, *(sys.modules[type(law).__module__] for law in (*MATERIALS, *COUPLINGS))],
+    [loops, scatter, *(sys.modules[type(law).__module__] for law in (*MATERIALS, *COUPLINGS))],
     ids=lambda module: module.__name__,
 )
 def test_no_source_is_missed(module):

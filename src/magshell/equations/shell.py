@@ -8,17 +8,10 @@ import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.equations.frames import to_frames, to_global
-from magshell.equations.insertion import (
-    Destination,
-    Elements,
-    Insertion,
-    add_matrices,
-    destination,
-    summed,
-    turn_matrices,
-)
+from magshell.equations.insertion import Insertion, destination, summed
 from magshell.equations.instant import Increment, Instant, Prediction, Weights
 from magshell.equations.numbering import Numbering
+from magshell.equations.scatter import Destination, Elements, add_matrices, turn_matrices
 from magshell.equations.term import Contribution, InvertedElement
 from magshell.model.course import Loading
 from magshell.model.supports import Constraints

@@ -131,5 +131,6 @@ def converged(discretisation: Discretisation, reached: Reached) -> Converged:
     Critical points and buckling modes do not keep the multipliers of the loads: there they are those of the histories.
     """
     loading = discretisation.model.course(reached.stage).at(reached.load_factor)
-    loads = getattr(reached, "loads", loading.loads)
-    return Converged(discretisation, reached.state, loading._replace(flux_density=reached.flux_density, loads=loads))
+    loads = getattr(reached, "loads", None)
+    acting = loading._replace(flux_density=reached.flux_density, loads=loading.loads if loads is None else loads)
+    return Converged(discretisation, reached.state, acting)

@@ -77,6 +77,9 @@ class ProblemFile(Table):
         "loads": ("kind", 2),
     }
 
+    # Tables of what is registered, and the whole, by the names of their classes.
+    classes: ClassVar[dict[str, type[Table]]] = {}
+
     title: str = ""
     description: str = ""
     mesh: TheMesh
@@ -122,13 +125,30 @@ def problem_file() -> type[ProblemFile]:
 
 @lru_cache(maxsize=1)
 def _problem_file(*registered: tuple[tuple[str, Any], ...]) -> type[ProblemFile]:
+    laws, ways, loads, supports = material_tables(), remanence_tables(), load_tables(), support_tables()
     entries: dict[str, Any] = {
-        "material": (_one_of(material_tables(), "law"), ...),
-        "remanence": (_list_of(_one_of(remanence_tables(), "kind")), ()),
-        "loads": (_list_of(_one_of(load_tables(), "kind")), ()),
-        "supports": (Annotated[_list_of(_one_of(support_tables(), "kind")), BeforeValidator(f.not_empty)], ...),
+        "material": (_one_of(laws, "law"), ...),
+        "remanence": (_list_of(_one_of(ways, "kind")), ()),
+        "loads": (_list_of(_one_of(loads, "kind")), ()),
+        "supports": (Annotated[_list_of(_one_of(supports, "kind")), BeforeValidator(f.not_empty)], ...),
     }
-    return create_model("ProblemFile", __base__=ProblemFile, **entries)
+    made = create_model("ProblemFile", __base__=ProblemFile, **entries)
+    tables = (made, *laws.values(), *ways.values(), *loads.values(), *supports.values())
+    made.classes = {table.__name__: table for table in tables}
+    for table in tables:  # pickle finds classes in modules only
+        setattr(table, "__reduce__", _pickled)  # noqa: B010
+    return made
+
+
+def _pickled(table: Table) -> tuple[Any, ...]:
+    return _restored, (type(table).__name__, table.__getstate__())
+
+
+def _restored(name: str, state: dict[Any, Any]) -> Table:
+    table = problem_file().classes[name]
+    restored: Table = table.__new__(table)
+    restored.__setstate__(state)
+    return restored
 
 
 def _one_of(tables: Mapping[str, type[Table]], choice: str) -> Any:
