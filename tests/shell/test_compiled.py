@@ -404,11 +404,11 @@ def solved():
 
 def test_a_law_in_a_users_file_needs_nothing_else_compiled(solved, cache, caplog, users):
     """It is the neo-Hookean one: the same path, bit for bit."""
-    before = [len(kernel._compiled.signatures) for kernel in (loops.fill, insertion.add_matrices)]
+    before = [len(kernel._compiled.signatures) for kernel in (loops.fill, scatter.add_matrices)]
     path = ms.solve(strip(field=(0.0, 0.0, 5e-3), material=users(*rubber())))
     assert caplog.messages == ["compiling the law UsersLaw ..."]
     assert [file.name.split("-")[0] for file in files(cache)] == ["UsersLaw"]
-    assert [len(kernel._compiled.signatures) for kernel in (loops.fill, insertion.add_matrices)] == before
+    assert [len(kernel._compiled.signatures) for kernel in (loops.fill, scatter.add_matrices)] == before
     assert [step.load_factor for step in path.steps] == [step.load_factor for step in solved.steps]
     for step, other in zip(path.steps, solved.steps, strict=True):
         assert np.array_equal(step.state.u, other.state.u)
@@ -422,7 +422,7 @@ def test_kernels_are_compiled_once_for_all_elements():
             state = d.undeformed()
             for prediction in (None, d.predicted(state)):
                 d.assemble(Instant(state, d.model.loading(1.0), prediction))
-    assert [len(kernel._compiled.signatures) for kernel in (loops.fill, insertion.add_matrices)] == [1, 1]
+    assert [len(kernel._compiled.signatures) for kernel in (loops.fill, scatter.add_matrices)] == [1, 1]
 
 
 PROMPT = (
