@@ -41,6 +41,8 @@ CAUSES = {
     "to and fro, nothing else": "came no nearer to the next stop",
 }
 """What the statistics call a cause, and the words of the message; the first that applies counts."""
+FINER, STIFFER = "times as many elements", "larger coupling_modulus"
+"""Words of the message that name a finer mesh, and a stiffer coupling, as what to do."""
 UNKNOWN, ENDED, UNFINISHED = "nothing stands out", "end of the path", f"not ended in {LIMIT:g} CPU s"
 
 
@@ -288,16 +290,26 @@ def _remedies(runs: Runs, endings: dict[int, Ending]) -> str:
     finer = {which: _kept(runs, which, refined=REFINED) for which in stopped}
     stiffer = {which: _kept(runs, which, coupling_ratio=1.0) for which in stopped}
     meshed, coupled = ({which for which, one in some.items() if one.ending == ENDED} for some in (finer, stiffer))
-    named = sum(which in {COARSE: meshed, LIMITED: coupled}.get(one.ending, set()) for which, one in stopped.items())
+    named = {which: _remedies_named(one.reason) for which, one in stopped.items()}
+    solved = {FINER: meshed, STIFFER: coupled}
+    first = sum(which in solved[words] for which, some in named.items() for words in some[:1])
+    any_one = sum(any(which in solved[words] for words in some) for which, some in named.items())
+    both = sum(len(some) == len(solved) for some in named.values())
     ended, solvable = len(endings) - len(stopped), len(endings) - len(stopped) + len(meshed | coupled)
     steps, cuts = (sum(getattr(one, name) for one in endings.values()) for name in ("steps", "cuts"))
     return (
         f"All paths together take {steps} steps and {cuts} cuts. Of the {len(stopped)} models that do not reach the "
         f"end, {len(meshed)} do so with {REFINED} times as many elements in both directions, {len(coupled)} with a "
-        f"coupling modulus equal to the shear modulus, {len(meshed | coupled)} with one or the other ({named} with the "
-        f"one that the message names). So {solvable} of {len(endings)} can be solved within {LIMIT:g} CPU s, and "
+        f"coupling modulus equal to the shear modulus, {len(meshed | coupled)} with one or the other: {first} of these "
+        f"with what the message names first, {any_one} with one that it names ({both} of the {len(stopped)} messages "
+        f"name both). So {solvable} of {len(endings)} can be solved within {LIMIT:g} CPU s, and "
         f"{ended} of these, {100.0 * ended / solvable:.0f} %, are solved as they are drawn."
     )
+
+
+def _remedies_named(reason: str) -> list[str]:
+    """Those that a message names, in its order."""
+    return sorted((words for words in (FINER, STIFFER) if words in reason), key=reason.index)
 
 
 def _kept(runs: Runs, which: int, refined: int = 1, coupling_ratio: float = 0.1) -> Ending:

@@ -314,8 +314,7 @@ def element_parts(d, state, e, parent, at):
     nodal = at[:NODAL].reshape(8, 10)
     u, w = state.u[nodes] + nodal[:, :3], state.w[rest] + nodal[: len(rest), 3:6]
     phi = state.phi[stretch] + nodal[: len(stretch), 6]
-    sign = np.where(state.q[rest] @ state.q[rest[0]] < 0.0, -1.0, 1.0)
-    q = np.array([turned(nodal[n, 7:], sign[n] * state.q[rest[n]]) for n in range(len(rest))])
+    q = np.array([turned(nodal[n, 7:], state.q[rest[n]]) for n in range(len(rest))])
     w_here, q_here = here.director @ w, here.rotation @ q
     enhanced = np.zeros((3, 3))
     if element.vectors:

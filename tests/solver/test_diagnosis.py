@@ -98,6 +98,60 @@ def test_path_ends_at_the_limit_of_the_couple() -> None:
     assert "mesh is too coarse" not in reason, reason
 
 
+def running_ahead(discretisation: Discretisation, degrees: float) -> State:
+    """The undeformed strip with its micro-rotation turned about X2."""
+    state, half = discretisation.undeformed(), math.radians(degrees) / 2.0
+    q = np.zeros_like(state.q)
+    q[:, 0], q[:, 2] = math.cos(half), math.sin(half)
+    return state._replace(q=q)
+
+
+def test_limit_of_the_couple_is_told_where_the_load_factor_turned() -> None:
+    """Beyond 45° the couple falls again: the last state alone would not tell of the limit."""
+    model = strip(field=(0, 0, 1.0), remanence=(0.143, 0, 0))
+    discretisation = discretised(model)
+    limit = 2.0 * model.shell.material.coupling_modulus * MU0 / 0.143
+    last, turned = discretisation.undeformed(), discretisation.undeformed()
+    said = diagnosis(discretisation, last, model.loading(0.3 * limit), None, (turned, model.loading(limit)))
+    assert said.startswith("Likely cause: the couple of the field reaches the limit"), said
+    assert "it is 100 % of that in element" in said, said
+    assert "where the load factor turned, and the micro-rotation runs ahead by up to 0°" in said, said
+    alone = diagnosis(discretisation, last, model.loading(0.3 * limit), None)
+    assert "nothing stands out" in alone, alone
+    assert "the couple is at most 30 %" in alone, alone
+    other = diagnosis(discretisation, last, model.loading(limit), None, (turned, model.loading(0.3 * limit)))
+    assert "it is 100 % of that" in other, other
+    assert "where the load factor turned" not in other, other
+
+
+@pytest.mark.parametrize(("degrees", "named"), [(8.0, None), (12.0, "is held softly"), (36.0, "reaches the limit")])
+def test_soft_coupling_is_told_after_the_mesh(degrees: float, named: str | None) -> None:
+    model = strip((4, 1), field=(0, 0, 1e-3), remanence=(0.143, 0, 0))
+    discretisation = discretised(model)
+    state = running_ahead(discretisation, degrees)
+    said = diagnosis(discretisation, state, model.loading(1.0), None)
+    assert (named is None) == ("nothing stands out" in said), said
+    if named is not None:
+        assert said.startswith("Likely cause: the"), said
+        assert named in said, said
+        assert f"by up to {degrees:.0f}°" in said, said
+        assert "larger coupling_modulus than" in said, said
+
+
+def test_mesh_is_named_before_a_soft_coupling() -> None:
+    """A strip rolled up by 40° in each element, with micro-rotations that are 12° further than the material."""
+    model = strip((4, 1), field=(0, 0, 1e-3), remanence=(0.143, 0, 0))
+    discretisation = discretised(model)
+    state = rolled(discretisation, math.radians(160.0))
+    half = np.arctan2(-state.q[:, 2], state.q[:, 0]) + math.radians(6.0)
+    ahead = np.stack([np.cos(half), 0.0 * half, -np.sin(half), 0.0 * half], axis=1)
+    said = diagnosis(discretisation, state._replace(q=ahead), model.loading(1.0), None)
+    assert said.startswith("Likely cause: the mesh is too coarse"), said
+    assert "Also, the micro-rotation is held softly" in said, said
+    aligned = diagnosis(discretisation, state, model.loading(1.0), None)
+    assert "micro-rotation" not in aligned, aligned
+
+
 def test_mesh_too_coarse_is_told_with_the_number_of_elements() -> None:
     """A strip of L/h = 401 on 8 elements under a strong field turns within the element at its clamp."""
     with pytest.raises(SolveError) as caught:

@@ -62,9 +62,7 @@ class Converged:
         q = self.state.q
         if self.discretisation.reference.body.layout.q == 4:
             ends = self._mid_side_ends
-            first, second = q[ends[:, 0]], q[ends[:, 1]]
-            sign = np.where(np.sum(first * second, axis=1, keepdims=True) < 0.0, -1.0, 1.0)
-            mean = first + sign * second
+            mean = q[ends[:, 0]] + q[ends[:, 1]]
             q = q.copy()
             q[self._mid_sides] = mean / np.linalg.norm(mean, axis=1, keepdims=True)
         return rotation.logarithm(q)

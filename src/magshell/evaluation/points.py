@@ -51,7 +51,6 @@ def evaluate(reference: Reference, state: State, stretch_at_points: FloatArray |
         R = np.broadcast_to(np.eye(3), (*a.shape[:2], 3, 3))
         return PointFields(F, R, np.zeros_like(a))
     q_nodes = state.q[rest]
-    q_nodes = q_nodes * np.where(np.sum(q_nodes * q_nodes[:, :1], axis=-1, keepdims=True) < 0.0, -1.0, 1.0)
     q, dq = (np.einsum("epan,enc->epac", shape.rotation[:, :, rows], q_nodes) for rows in (slice(0, 1), slice(1, 3)))
     q = q[:, :, 0]
     length = np.sum(q * q, axis=-1)

@@ -66,9 +66,12 @@ def gather(
     layout: Layout,
     v: FloatArray,
 ) -> None:
-    """Fill v with the element's values; quaternions are aligned to the first node's hemisphere."""
+    """Fill v with the element's values.
+
+    Quaternions go in as they are: spins carry them on from one and the same identity, so that the sign of one against
+    another counts the turns between them, and the interpolation stays continuous where these pass 180°.
+    """
     u, w, phi, q = state.u, state.w, state.phi, state.q
-    first = q[nodes[0]]
     for i in range(3):
         at_u, at_w = i * layout.u, layout.at_w + i * layout.w
         for n in range(layout.u):
@@ -81,10 +84,8 @@ def gather(
     at = layout.at_q
     for n in range(layout.q):
         node = nodes[n]
-        dot = first[0] * q[node, 0] + first[1] * q[node, 1] + first[2] * q[node, 2] + first[3] * q[node, 3]
-        sign = -1.0 if dot < 0.0 else 1.0
         for c in range(4):
-            v[at + c * layout.q + n] = sign * q[node, c]
+            v[at + c * layout.q + n] = q[node, c]
     at += 4 * layout.q
     for m in range(layout.modes):
         for i in range(3):

@@ -1,4 +1,4 @@
-r"""Why a path ends: what is measured in its last converged state, and in the step that failed.
+r"""Why a path ends: what is measured in its last converged state, where it turned, and in the step that failed.
 
 Three things end a path other than the physics of the body:
 
@@ -9,10 +9,14 @@ Three things end a path other than the physics of the body:
 * *Couple at its limit.* The field's couple reaches the material through the micro-rotation alone. With F = Q S and the
   micro-rotation turned by θ about n relative to Q, the energy -η/2 tr(U²) resists with (η/2) (tr S - n·S n)² sin 2θ per
   unit volume: nothing more than that with sin 2θ = 1, 2η where nothing is stretched, can be transferred, and beyond 45°
-  there is no stable equilibrium.
+  there is no stable equilibrium. The load factor turns there, and beyond it the couple falls again: it is measured
+  at the first limit point of the stage too. Well below the limit the micro-rotation may already be so far from the
+  rotation of the material that it gives way first.
 * *An element turned inside out*, where det F is far from one at its points already.
 
-Only what stands out is named as a cause; where nothing does, the figures are told.
+Each is measured in the last state and where the load factor turned first, since the states after that point are not
+those that a growing load leads to; the worse of the two counts. Only what stands out is named as a cause; where nothing
+does, the figures are told.
 """
 
 from __future__ import annotations
@@ -35,6 +39,8 @@ from magshell.shell.state import State
 SAFE = 30.0
 # Part of the greatest couple, and angle between micro-rotation and material (degrees), at which the limit is near.
 NEAR_LIMIT, RUNNING_AHEAD = 0.9, 35.0
+# The same where the coupling is named as soft: sin 2θ = 1/3 at θ = 10°.
+SOFT_LIMIT, LAG = 1.0 / 3.0, 10.0
 # det F in the last state below which an element is about to turn inside out.
 SQUASHED = 0.5
 
@@ -76,7 +82,7 @@ class Squash(NamedTuple):
 
 
 class Measures(NamedTuple):
-    """What is measured in a state."""
+    """What is measured in a state, or the worst of several."""
 
     turn: Turn
     squash: Squash
@@ -93,8 +99,14 @@ def measure(discretisation: Discretisation, state: State, loading: Loading) -> M
     )
 
 
-def diagnosis(discretisation: Discretisation, state: State, loading: Loading, inverted: int | None) -> str:
-    """Sentences for the end of a message: the causes that the last state shows, and what to do.
+def diagnosis(
+    discretisation: Discretisation,
+    state: State,
+    loading: Loading,
+    inverted: int | None,
+    turned: tuple[State, Loading] | None = None,
+) -> str:
+    """Sentences for the end of a message: the causes that are measured, and what to do.
 
     Parameters
     ----------
@@ -105,27 +117,44 @@ def diagnosis(discretisation: Discretisation, state: State, loading: Loading, in
         What acts there.
     inverted : int or None
         The element that the failed step turns inside out.
+    turned : tuple of State and Loading, optional
+        Where the load factor turned first.
     """
-    measured = measure(discretisation, state, loading)
-    causes = [*_causes(discretisation, measured)]
+    last = measure(discretisation, state, loading)
+    worst = last if turned is None else _worse(last, measure(discretisation, *turned))
+    causes = [*_causes(discretisation, last, worst)]
     where = ""
     if inverted is not None and (groups := _touched(discretisation, inverted)):
         where = f" Element {inverted}, which is turned inside out, touches the support '{groups[0]}'."
     if causes:
         return "Likely cause: " + " Also, ".join(causes) + where
     return (
-        f"In the last state nothing stands out: {_figures(measured)}.{where} The path may bend too sharply there (a "
+        f"In the last state nothing stands out: {_figures(last)}.{where} The path may bend too sharply there (a "
         "smaller largest_step shows it), or a unit may have slipped (`magshell check` shows the magnitudes)."
     )
 
 
-def _causes(discretisation: Discretisation, measured: Measures) -> Iterator[str]:
-    turn, squash, couple = measured
+def _worse(one: Measures, other: Measures) -> Measures:
+    """The worse of each measure in two states."""
+    turn = max(one.turn, other.turn, key=lambda turn: turn.angle)
+    squash = min(one.squash, other.squash, key=lambda squash: squash.determinant)
+    couples = [couple for couple in (one.couple, other.couple) if couple is not None]
+    if not couples:
+        return Measures(turn, squash, None)
+    couple = max(couples, key=lambda couple: couple.ratio)
+    return Measures(turn, squash, couple._replace(ahead=max(couple.ahead for couple in couples)))
+
+
+def _causes(discretisation: Discretisation, last: Measures, worst: Measures) -> Iterator[str]:
+    """The causes, from the measures in the last state and the worst ones: limit, mesh, soft coupling, squashing."""
+    turn, squash, couple = worst
     coupling = discretisation.model.shell.material.coupling_modulus
-    if couple is not None and (couple.ratio > NEAR_LIMIT or couple.ahead > RUNNING_AHEAD):
+    limited = couple is not None and (couple.ratio > NEAR_LIMIT or couple.ahead > RUNNING_AHEAD)
+    if couple is not None and limited:
         yield (
             f"the couple of the field reaches the limit of what the micro-rotation transfers to the material: it is "
-            f"{100 * couple.ratio:.0f} % of that in {_place(discretisation, couple.element)}, and the micro-rotation "
+            f"{100 * couple.ratio:.0f} % of that in {_place(discretisation, couple.element)}"
+            f"{_when(couple.ratio, last.couple and last.couple.ratio)}, and the micro-rotation "
             f"runs ahead by up to {couple.ahead:.0f}° (beyond 45° nothing holds it). Take a larger coupling_modulus "
             f"than {coupling / 1e3:.4g} kPa, or a weaker field."
         )
@@ -134,13 +163,27 @@ def _causes(discretisation: Discretisation, measured: Measures) -> Iterator[str]
         before = f" ({turn.undeformed:.0f}° before)" if turn.undeformed > 1.0 else ""
         yield (
             f"the mesh is too coarse for the bending: {_place(discretisation, turn.element)} turns by "
-            f"{turn.angle:.0f}°{before} from node {one} to node {other}, where {SAFE:.0f}° are safe. Take "
-            f"{np.ceil(2.0 * turn.angle / SAFE) / 2.0:g} times as many elements, or more, in that direction."
+            f"{turn.angle:.0f}°{before} from node {one} to node {other}{_when(turn.angle, last.turn.angle)} "
+            f"({SAFE:.0f}° are safe). Take {np.ceil(2.0 * turn.angle / SAFE) / 2.0:g} times as many elements, or more, "
+            "in that direction."
+        )
+    if couple is not None and not limited and (couple.ratio > SOFT_LIMIT or couple.ahead > LAG):
+        yield (
+            f"the micro-rotation is held softly: it runs ahead of the material by up to {couple.ahead:.0f}°, and the "
+            f"couple of the field is {100 * couple.ratio:.0f} % of what it can transfer in "
+            f"{_place(discretisation, couple.element)}{_when(couple.ratio, last.couple and last.couple.ratio)}. A "
+            f"larger coupling_modulus than {coupling / 1e3:.4g} kPa, or a weaker field, may help."
         )
     if squash.determinant < SQUASHED:
         yield (
-            f"the material is squashed: det F is {squash.determinant:.2g} in {_place(discretisation, squash.element)}."
+            f"the material is squashed: det F is {squash.determinant:.2g} in {_place(discretisation, squash.element)}"
+            f"{_when(squash.determinant, last.squash.determinant)}."
         )
+
+
+def _when(worst: float, last: float | None) -> str:
+    """Where on the path the worst of a measure was met."""
+    return "" if worst == last else " where the load factor turned"
 
 
 def _figures(measured: Measures) -> str:

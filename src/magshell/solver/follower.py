@@ -277,8 +277,7 @@ class Follower:
 
     def _turned(self) -> str:
         """The first limit point of the stage, and what the states since are; "" without one."""
-        here = [point for point in self.path.critical_points if point.stage == self.stage]
-        turns = [point for point in here if point.kind == LIMIT_POINT]
+        turns = self._turns()
         if not turns:
             return ""
         first = turns[0]
@@ -292,6 +291,10 @@ class Follower:
             "equilibria does not tell."
         )
 
+    def _turns(self) -> list[CriticalPoint]:
+        """The limit points of the stage."""
+        return [at for at in self.path.critical_points if at.stage == self.stage and at.kind == LIMIT_POINT]
+
     def _position(self) -> str:
         last = self.path.steps[-1]
         magnitude = float(np.linalg.norm(last.flux_density))
@@ -300,5 +303,6 @@ class Follower:
         return f"stopped at load factor {last.load_factor:.6g}{where}{field}"
 
     def _diagnosis(self, inverted: int | None) -> str:
-        last = self.path.steps[-1]
-        return diagnosis(self.discretisation, last.state, self.path.loading(last), inverted)
+        last, turns = self.path.steps[-1], self._turns()
+        turned = (turns[0].state, self.system.course.at(turns[0].load_factor)) if turns else None
+        return diagnosis(self.discretisation, last.state, self.path.loading(last), inverted, turned)
