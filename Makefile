@@ -1,6 +1,6 @@
 # make demo: a virtual environment, the gripper solved, its picture.   make test: lint, types, tests.
 # make docs: the documentation site, in docs/_build/html; any warning is an error (make test builds it too).
-# make verify: 10 000 damaged files, and the studies behind the pages of docs; an hour or so, may be interrupted.
+# make verify: the long tests, 10 000 damaged files, and the studies behind the pages of docs; an hour or so, may be interrupted.
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
@@ -28,6 +28,7 @@ figures: $(VENV)/installed
 	$(BIN)/python docs/make_sweep_figure.py
 
 verify: $(VENV)/installed-dev
+	$(BIN)/pytest -m verify
 	MAGSHELL_MUTATIONS=10000 $(BIN)/pytest tests/faults
 	$(BIN)/python docs/make_element_study.py
 	$(BIN)/python docs/make_accuracy_study.py

@@ -7,7 +7,7 @@ from functools import cache
 
 import pytest
 
-from examples.problems import read
+from examples.problems import PART_OF_THE_PUMP, part_of_the_pump, read
 from magshell import Path, solve
 from magshell.problem.building import build
 
@@ -18,7 +18,7 @@ def solved() -> Callable[[str], Path]:
 
     @cache
     def path(name: str) -> Path:
-        source, file = read(name)
+        source, file = part_of_the_pump() if name == PART_OF_THE_PUMP else read(name)
         built = build(file, source)
         return solve(built.model, built.settings)
 

@@ -29,6 +29,17 @@ def read(name: str, element: str = "paper") -> tuple[str, ProblemFile]:
     return source, file.model_copy(update={"shell": shell})
 
 
+PART_OF_THE_PUMP = "pump to 10 mT"
+
+
+def part_of_the_pump() -> tuple[str, ProblemFile]:
+    """The pump in a fifteenth of its field, on every other element."""
+    source, file = read("pump")
+    field = file.field.model_copy(update={"flux_density": (0.0, 0.0, 10e-3), "stops": (5e-3,)})
+    mesh = file.mesh.model_copy(update={"elements": (12, 10)})
+    return source, file.model_copy(update={"field": field, "mesh": mesh})
+
+
 def variant(
     name: str,
     divide: int = 1,

@@ -5,10 +5,13 @@ One file, so that one process solves each of them once.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+from typing import Any
+
 import numpy as np
 import pytest
 
-from examples.problems import read, value_at, variant
+from examples.problems import PART_OF_THE_PUMP, read, value_at, variant
 from examples.references import FINE_MESH, SAME_MESH, STRIP_LENGTHS, Reference
 from magshell import Path, solve
 from magshell.equations.instant import Instant
@@ -22,7 +25,19 @@ MU0 = 4e-7 * np.pi
 BALANCE = 1e-8
 
 
-@pytest.mark.parametrize("reference", SAME_MESH, ids=[one.label for one in SAME_MESH])
+def each(names: Iterable[str]) -> list[Any]:
+    """Problems as parameters; the pump's is solved in a part for the tests, and to its end by `make verify`."""
+    marks = {"pump": pytest.mark.verify}
+    return [pytest.param(name, marks=marks.get(name, ())) for name in names]
+
+
+def each_reference(references: Sequence[Reference]) -> list[Any]:
+    return [
+        pytest.param(one, id=one.label, marks=pytest.mark.verify if one.problem == "pump" else ()) for one in references
+    ]
+
+
+@pytest.mark.parametrize("reference", each_reference(SAME_MESH))
 def test_value_of_the_same_formulation_on_the_same_mesh(reference: Reference, solved) -> None:
     found = value_at(solved(reference.problem), reference)
     difference = found / reference.value - 1.0
@@ -44,7 +59,7 @@ def default() -> dict[str, Path]:
     return {}
 
 
-@pytest.mark.parametrize("reference", FINE_MESH, ids=[one.label for one in FINE_MESH])
+@pytest.mark.parametrize("reference", each_reference(FINE_MESH))
 def test_value_of_the_solid_with_the_default_element(reference: Reference, default: dict[str, Path]) -> None:
     """It needs no finer mesh: what is left is the difference of the theories.
 
@@ -79,7 +94,9 @@ def check_solid(reference: Reference, paths: dict[str, Path], divide: int, eleme
     )
 
 
-every_problem = pytest.mark.parametrize("name", [name for example in EXAMPLES for name in example.problems])
+every_problem = pytest.mark.parametrize(
+    "name", each([*(name for example in EXAMPLES for name in example.problems), PART_OF_THE_PUMP])
+)
 
 
 @every_problem
