@@ -24,7 +24,7 @@ def destination(elements: Elements, numbering: Numbering) -> Destination:
     pairs = np.repeat(elements.nodes, m, axis=1), np.tile(elements.nodes, (1, m))
     return Destination(
         elements=elements,
-        entry=COMPONENTS * elements.nodes[:, elements.node] + elements.component,
+        entry=np.ascontiguousarray(COMPONENTS * elements.nodes[:, elements.node] + elements.component),
         number=numbering.number,
         rank=numbering.rank,
         indptr=numbering.indptr,
