@@ -9,7 +9,7 @@ import numpy as np
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.equations.frames import to_frames, to_global
 from magshell.equations.insertion import Insertion, destination, summed
-from magshell.equations.instant import Increment, Instant, Prediction, Weights
+from magshell.equations.instant import STATIC, Increment, Instant, Prediction, Weights
 from magshell.equations.numbering import Numbering
 from magshell.equations.scatter import Destination, Elements, add_matrices, turn_matrices
 from magshell.equations.term import Contribution, InvertedElement
@@ -112,7 +112,7 @@ class ShellTerm:
 
     def energy(self, instant: Instant) -> FloatArray:
         """Elastic and magnetic energy of each element (elements, 2), J."""
-        self.evaluate(instant, Weights(1.0, 0.0, 0.0), None, None)
+        self.evaluate(instant, STATIC, None, None)
         return self._filled.energy.copy()
 
     def load_rate(self, instant: Instant, rate: Loading) -> FloatArray:
@@ -121,9 +121,8 @@ class ShellTerm:
             return np.zeros((self._nodes, COMPONENTS))
         loading = instant.loading
         ahead = loading._replace(flux_density=loading.flux_density + rate.flux_density)
-        static = Weights(1.0, 0.0, 0.0)
         after, now = (
-            self.evaluate(Instant(instant.state, one), static, None, None).residual for one in (ahead, loading)
+            self.evaluate(Instant(instant.state, one), STATIC, None, None).residual for one in (ahead, loading)
         )
         return np.asarray(after - now)
 

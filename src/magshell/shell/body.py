@@ -86,8 +86,7 @@ def reference_of(surface: Surface, make: Make) -> Reference:
     levels["z"], levels["volume"], levels["G"] = geometry.z, geometry.volume, geometry.G
     levels["remanence"] = make.remanence
     levels["material"], levels["coupling"] = make.material_of[:, None], make.coupling_of[:, None]
-    modulus = np.array([material.couple_modulus for material in make.materials])[make.material_of]
-    points = _points(geometry, shape, modulus)
+    points = _points(geometry, shape, of_elements(make, "couple_modulus"))
     held = hold(surface.points, element, make.thickness, of_elements(make, "shear_modulus").mean(axis=1))
     laws = Laws(*material_laws.addresses(make.materials), *coupling_laws.addresses(make.couplings))
     body = Body(
