@@ -19,7 +19,7 @@ from magshell.equations.shell import ShellTerm
 from magshell.equations.term import Term, squares_by_kind
 from magshell.model.course import Loading
 from magshell.model.model import Model
-from magshell.model.reference import reference_of_model, stiffest_of
+from magshell.model.reference import make_of, reference_of_model, stiffest_of
 from magshell.openblas import allocate_buffers
 from magshell.shell.state import State
 from magshell.shell.unknowns import COLUMNS, COMPONENTS, UNKNOWNS
@@ -74,7 +74,7 @@ class Discretisation:
         Those that there are.
     reference : Reference
         Arrays of the undeformed shell.
-    materials : list of Material
+    materials : sequence of Material
         Of the regions of the shell.
     carried, free : ndarray of bool, shape (nodes, 10)
         Which unknowns there are, and which of them no support holds.
@@ -83,11 +83,11 @@ class Discretisation:
     def __init__(self, model: Model, ordering: Ordering) -> None:
         allocate_buffers()
         self.model, self.mesh = model, model.shell.mesh
-        self.reference = reference_of_model(model)
-        self.shell = ShellTerm(self.reference, len(self.mesh.points), stiffest_of(model))
+        make = make_of(model)
+        self.reference, self.materials = reference_of_model(model, make), make.materials
+        self.shell = ShellTerm(self.reference, len(self.mesh.points), stiffest_of(make))
         self.loads = LoadTerm(model.applied, model.constraints)
         self.terms: Sequence[Term] = (self.shell, self.loads) if model.applied else (self.shell,)
-        self.materials = [region.material for region in model.shell.regions]
         self.carried = columns_of(model.shell.carriers)
         self.free = self.carried & ~model.constraints.fixed
         cliques = [clique for term in self.terms for clique in term.couplings()]

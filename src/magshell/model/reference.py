@@ -14,8 +14,8 @@ from magshell.shell.geometry import Sections, least_shifts
 LEVELS = 2
 
 
-def reference_of_model(model: Model) -> Reference:
-    """The arrays of the undeformed shell.
+def reference_of_model(model: Model, make: Make) -> Reference:
+    """The arrays of the undeformed shell, made of what `make_of` says.
 
     Raises
     ------
@@ -26,7 +26,6 @@ def reference_of_model(model: Model) -> Reference:
     surface = Surface(
         elements, shell.mesh.points[elements], model.normals[elements], shell.element, shell.micro_rotation
     )
-    make = make_of(model)
     reference = reference_of(surface, make)
     _check_thickness(least_shifts(reference.geometry, make.thickness))
     return reference
@@ -53,9 +52,8 @@ def make_of(model: Model) -> Make:
     )
 
 
-def stiffest_of(model: Model) -> FloatArray:
+def stiffest_of(make: Make) -> FloatArray:
     """Largest modulus of each element's levels (elements, levels), Pa."""
-    make = make_of(model)
     return 2.0 * of_elements(make, "shear_modulus") + of_elements(make, "lame_lambda")
 
 

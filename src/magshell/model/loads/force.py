@@ -20,7 +20,8 @@ from magshell.model.loads.checks import vector
 from magshell.model.loads.cross import cross_matrix
 from magshell.model.loads.dead import DeadForces, nodal
 from magshell.model.loads.distribution import shares
-from magshell.model.loads.load import Applied, Load, Pairs, Size
+from magshell.model.loads.load import Applied, Pairs, Size
+from magshell.model.loads.total import FOLLOWER, GROUP, TotalLoad
 from magshell.model.shell import Shell
 from magshell.shell import rotation
 from magshell.shell.state import State
@@ -28,7 +29,7 @@ from magshell.units import FORCE, Dimension
 
 
 @dataclass(frozen=True, eq=False)
-class Force(Load):
+class Force(TotalLoad):
     """A force on the displacements of a group.
 
     Parameters
@@ -47,9 +48,9 @@ class Force(Load):
 
     kind: ClassVar[str] = "force"
     keys: ClassVar[Mapping[str, Key]] = {
-        "group": Key("Name", "Group of edges, nodes or elements that it acts on."),
+        "group": GROUP,
         "total": Key("ForceVector", "Its sum over the group."),
-        "follower": Key("Switch", "Whether it turns with the micro-rotations of its nodes."),
+        "follower": FOLLOWER,
         "history": HISTORY,
     }
     amount: ClassVar[tuple[str, Dimension]] = ("total", FORCE)
@@ -70,10 +71,6 @@ class Force(Load):
             parts = shares(shell, self.group, "omega" if self.follower else "u")
             on_u = parts[:, None] * vector("total", self.total)
         return _TurningForces(on_u) if self.follower else DeadForces(on_u)
-
-    def words(self, shell: Shell, forces: FloatArray) -> str:
-        """Total and number of nodes."""
-        return f"{self.given}, {self.extent(shell)}" + ", turns with the micro-rotation" * self.follower
 
     def size(self, forces: FloatArray) -> Size:
         """Its total."""

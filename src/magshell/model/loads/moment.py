@@ -30,7 +30,8 @@ from magshell.model.loads.checks import vector
 from magshell.model.loads.cross import cross_matrix
 from magshell.model.loads.dead import nodal
 from magshell.model.loads.distribution import shares
-from magshell.model.loads.load import Applied, Load, Pairs, Size
+from magshell.model.loads.load import Applied, Pairs, Size
+from magshell.model.loads.total import FOLLOWER, GROUP, TotalLoad
 from magshell.model.shell import Shell
 from magshell.shell import rotation
 from magshell.shell.state import State
@@ -38,7 +39,7 @@ from magshell.units import MOMENT, Dimension
 
 
 @dataclass(frozen=True, eq=False)
-class Moment(Load):
+class Moment(TotalLoad):
     """A moment on the micro-rotations of a group; on the directors where the shell has no micro-rotation.
 
     Parameters
@@ -55,9 +56,9 @@ class Moment(Load):
 
     kind: ClassVar[str] = "moment"
     keys: ClassVar[Mapping[str, Key]] = {
-        "group": Key("Name", "Group of edges, nodes or elements that it acts on."),
+        "group": GROUP,
         "total": Key("MomentVector", "Its sum over the group."),
-        "follower": Key("Switch", "Whether it turns with the micro-rotations of its nodes."),
+        "follower": FOLLOWER,
         "history": HISTORY,
     }
     amount: ClassVar[tuple[str, Dimension]] = ("total", MOMENT)
@@ -82,10 +83,6 @@ class Moment(Load):
         if not shell.micro_rotation:
             return _DirectorMoments(moments, normals)
         return _TurningCouples(moments) if self.follower else _DeadCouples(moments)
-
-    def words(self, shell: Shell, forces: FloatArray) -> str:
-        """Total and number of nodes."""
-        return f"{self.given}, {self.extent(shell)}" + ", turns with the micro-rotation" * self.follower
 
     def size(self, forces: FloatArray) -> Size:
         """Its total."""
