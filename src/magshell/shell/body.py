@@ -14,9 +14,9 @@ from magshell.shell.bubble import hold
 from magshell.shell.element import layout_of
 from magshell.shell.elements import ElementType
 from magshell.shell.geometry import Interpolation, SectionGeometry, Sections, interpolation, section_geometry
+from magshell.shell.level import Laws
 from magshell.shell.loops import Body
 from magshell.shell.point import LEVEL, POINT
-from magshell.shell.section import Laws
 
 
 class Surface(NamedTuple):
@@ -25,6 +25,9 @@ class Surface(NamedTuple):
     Attributes
     ----------
     elements : ndarray, shape (elements, 8)
+        Rows of the nodal arrays.
+    stretched : ndarray of bool, shape (elements,)
+        Whether an element has nodes that carry a stretch of the director.
     points, normals : ndarray, shape (elements, 8, 3)
         m; unit normals at the nodes.
     element : ElementType
@@ -33,6 +36,7 @@ class Surface(NamedTuple):
     """
 
     elements: IntArray
+    stretched: AnyArray
     points: FloatArray
     normals: FloatArray
     element: ElementType
@@ -45,25 +49,31 @@ class Make(NamedTuple):
     Attributes
     ----------
     thickness : ndarray, shape (elements,)
-        m.
+        Mean, m.
     sections : Sections
+    levels : ndarray, shape (elements,)
+        How many each element has.
+    by_level : ndarray of bool, shape (elements,)
+        Whether each level has a stretch of its own, in place of φ.
+    warping : ndarray, shape (elements, points, levels)
+        By how much the transverse shear of a level exceeds the director's, as a share of it.
     remanence : ndarray, shape (elements, points, levels, 3)
         T.
     materials, couplings : sequence of Material, sequence of Coupling
     material_of, coupling_of : ndarray, shape (elements, levels)
         Which of them holds at a level.
-    plane_stress : bool
-        Whether φ is eliminated at each point.
     """
 
     thickness: FloatArray
     sections: Sections
+    levels: IntArray
+    by_level: AnyArray
+    warping: FloatArray
     remanence: FloatArray
     materials: Sequence[Any]
     material_of: IntArray
     couplings: Sequence[Any]
     coupling_of: IntArray
-    plane_stress: bool
 
 
 class Reference(NamedTuple):
@@ -81,23 +91,29 @@ def reference_of(surface: Surface, make: Make) -> Reference:
     shape = interpolation(surface.points, surface.normals, element, surface.micro_rotation)
     _, weights = element.integration(surface.points)
     geometry = section_geometry(surface.points, surface.normals, shape, weights, make.sections)
-    layout = layout_of(8, element.rest_nodes, element.stretch_nodes, shape.rotation.shape[-1], element.vectors)
+    s = element.rest_nodes if surface.stretched.any() else 0
+    layout = layout_of(8, element.rest_nodes, element.stretch_nodes, shape.rotation.shape[-1], element.vectors, s)
     levels = np.zeros(geometry.volume.shape, dtype=LEVEL)
     levels["z"], levels["volume"], levels["G"] = geometry.z, geometry.volume, geometry.G
+    levels["height"], levels["warping"] = make.sections.heights, make.warping
     levels["remanence"] = make.remanence
     levels["material"], levels["coupling"] = make.material_of[:, None], make.coupling_of[:, None]
     points = _points(geometry, shape, of_elements(make, "couple_modulus"))
-    held = hold(surface.points, element, make.thickness, of_elements(make, "shear_modulus").mean(axis=1))
+    points["levels"], points["by_level"] = make.levels[:, None], make.by_level[:, None]
+    heights = make.sections.heights.mean(axis=1)
+    shear_modulus = np.average(of_elements(make, "shear_modulus"), axis=1, weights=heights)
+    held = hold(surface.points, element, make.thickness, shear_modulus)
     laws = Laws(*material_laws.addresses(make.materials), *coupling_laws.addresses(make.couplings))
     body = Body(
         elements=np.ascontiguousarray(surface.elements),
+        normals=np.ascontiguousarray(surface.normals),
+        stretched=surface.stretched,
         layout=layout,
         points=points,
         levels=levels,
         enhancement=shape.enhancement,
         laws=laws,
         hold=held,
-        plane_stress=make.plane_stress,
     )
     views = SectionGeometry(points["A"], points["D"], points["dD"], levels["z"], levels["G"], levels["volume"])
     functions = Interpolation(

@@ -36,8 +36,10 @@ class Layout(NamedTuple):
         How many of the element's nodes carry each field.
     modes : int
         Enhanced modes.
+    s : int
+        How many nodes may carry a stretch of the director (`director_stretch.py`); 0 where no sections differ.
     at_w, at_phi, at_q, nodal : int
-        First place of w, of φ, of q or ϑ, and with ϑ of α.
+        First place of w, of φ, of q or ϑ, and with ϑ of α, and of s after the elimination of α.
     """
 
     u: int
@@ -45,17 +47,18 @@ class Layout(NamedTuple):
     phi: int
     q: int
     modes: int
+    s: int
     at_w: int
     at_phi: int
     at_q: int
     nodal: int
 
 
-def layout_of(u: int, w: int, phi: int, q: int, modes: int) -> Layout:
+def layout_of(u: int, w: int, phi: int, q: int, modes: int, s: int = 0) -> Layout:
     """Places of so many nodes' values."""
     at_phi = 3 * u + 3 * w
     at_q = at_phi + phi
-    return Layout(u, w, phi, q, modes, 3 * u, at_phi, at_q, at_q + 3 * q)
+    return Layout(u, w, phi, q, modes, s, 3 * u, at_phi, at_q, at_q + 3 * q)
 
 
 @inline
@@ -231,12 +234,12 @@ def transpose(A: FloatArray, out: FloatArray) -> None:
 def condense(
     Kt: FloatArray, r: FloatArray, size: int, gain: FloatArray, offset: FloatArray, factor: FloatArray
 ) -> bool:
-    """Eliminate the unknowns from `size` on: Kᵀ and r condensed in place, Δα = -offset - gain Δv.
+    """Eliminate the α, which stand from `size` on: Kᵀ and r condensed in place, Δα = -offset - gain Δv.
 
     Gauss–Jordan with pivoting on [K_αα | K_αv | r_α], in `factor`; False where K_αα is singular. The unknowns come in
     vectors of three. What is not a number stays so.
     """
-    modes = Kt.shape[0] - size
+    modes = len(factor)
     width = modes + size + 1
     for a in range(modes):
         for b in range(modes):

@@ -12,7 +12,10 @@ from magshell.shell.elements import ElementType
 
 
 class Sections(NamedTuple):
-    """Through the thickness of each element: levels z (elements, k) and the height of each, both m."""
+    """Through the thickness: levels z (elements, p, k), from the mesh surface, and the height of each, both m.
+
+    Elements of fewer levels than others repeat their first with a height of zero.
+    """
 
     z: FloatArray
     heights: FloatArray
@@ -191,24 +194,23 @@ def section_geometry(
         np.einsum("epan,enx->epax", shape.director[:, :, rows], normals[:, :rest])
         for rows in (slice(0, 1), slice(1, 3))
     )
-    z = np.broadcast_to(sections.z[:, None], (*A.shape[:2], sections.z.shape[1]))
+    z = sections.z
     covariant = A[:, :, None] + z[..., None, None] * dD[:, :, None]
     base = np.concatenate([covariant, np.broadcast_to(D[:, :, None], (*covariant.shape[:3], 1, 3))], axis=3)
     G = np.swapaxes(np.linalg.inv(base), -1, -2)
-    volume = np.linalg.det(base) * sections.heights[:, None] * weights[..., None]
+    volume = np.linalg.det(base) * sections.heights * weights[..., None]
     return SectionGeometry(A, D[:, :, 0], dD, z, G, volume)
 
 
-def least_shifts(geometry: SectionGeometry, thickness: FloatArray) -> FloatArray:
+def least_shifts(geometry: SectionGeometry, faces: FloatArray) -> FloatArray:
     """Least eigenvalue of the shifter I - z B at the two faces, (elements, p, 2): not positive where layers overlap.
 
-    `thickness` is that of each element (elements,), m.
+    `faces` (elements, p, 2) are their z, m.
     """
-    faces = np.array([-0.5, 0.5]) * thickness[:, None]
     metric = np.einsum("epax,epbx->epab", geometry.A, geometry.A)
     slope = np.einsum("epax,epbx->epab", geometry.dD, geometry.A)
     curvatures = np.linalg.eigvals(np.linalg.solve(metric, slope)).real
-    return np.asarray(1.0 + np.min(faces[:, None, :, None] * curvatures[:, :, None], axis=-1))
+    return np.asarray(1.0 + np.min(faces[..., None] * curvatures[:, :, None], axis=-1))
 
 
 def unit_forces(geometry: SectionGeometry, shape: Interpolation, modulus: FloatArray) -> FloatArray:

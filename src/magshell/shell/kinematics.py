@@ -9,12 +9,12 @@ from magshell.shell.rotation import LAST, NEXT
 
 
 @inline
-def base_vectors(point: Record, z: float, x: FloatArray, g: FloatArray) -> None:
-    """Fill g (3, 3): rows g_1, g_2, g_3 at the level z."""
+def base_vectors(point: Record, z: float, zeta: float, x: FloatArray, g: FloatArray) -> None:
+    """Fill g (3, 3): rows g_1, g_2, g_3 at the level z, which has the stretch zeta of its own."""
     for i in range(3):
         g[0, i] = point.A[0, i] + x[U1 + i] + z * (point.dD[0, i] + x[W1 + i])
         g[1, i] = point.A[1, i] + x[U1 + 3 + i] + z * (point.dD[1, i] + x[W1 + 3 + i])
-        g[2, i] = (1.0 + 2.0 * z * x[PHI]) * (point.D[i] + x[W + i]) + x[ENHANCED + i]
+        g[2, i] = (1.0 + 2.0 * z * x[PHI] + zeta) * (point.D[i] + x[W + i]) + x[ENHANCED + i]
 
 
 @inline

@@ -1,6 +1,6 @@
 """Loops over the elements: matrices and forces, enhanced parameters, predicted stresses.
 
-Nodal arrays have ten columns: u (3), w (3), φ, spin ϑ (3); a column that a node does not carry stays zero.
+Nodal arrays have eleven columns: u (3), w (3), φ, spin ϑ (3), s; a column that a node does not carry stays zero.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import numpy as np
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.compiled import Kernel, inline
 from magshell.shell.bubble import Hold, hold_vector
+from magshell.shell.director_stretch import chain_forces, chain_matrix, stretch_directors, stretch_increments
 from magshell.shell.element import (
     Layout,
     add_radial_force,
@@ -24,13 +25,11 @@ from magshell.shell.element import (
     spin_derivatives,
     transpose,
 )
-from magshell.shell.plane_stress import eliminate_stretch
+from magshell.shell.level import Laws
 from magshell.shell.point import INTERNAL, MAGNETIC, PADDED, SIZE, workspace
 from magshell.shell.rotation import LAST, NEXT
-from magshell.shell.section import Laws, Request, predicted_stress, section
+from magshell.shell.section import Request, predicted_stress, section
 from magshell.shell.state import State
-
-ELIMINATION_STEPS = 30
 
 
 class Body(NamedTuple):
@@ -39,6 +38,11 @@ class Body(NamedTuple):
     Attributes
     ----------
     elements : ndarray, shape (elements, 8)
+        Rows of the nodal arrays.
+    normals : ndarray, shape (elements, 8, 3)
+        Directors of the undeformed shell at the nodes.
+    stretched : ndarray of bool, shape (elements,)
+        Whether an element has nodes that carry a stretch of the director.
     layout : Layout
     points : ndarray of POINT, shape (elements, points)
     levels : ndarray of LEVEL, shape (elements, points, levels)
@@ -47,18 +51,17 @@ class Body(NamedTuple):
     laws : Laws
     hold : Hold
         What holds the bubbles of u and the turning fields of triangles.
-    plane_stress : bool
-        Whether φ is eliminated at each point.
     """
 
     elements: IntArray
+    normals: FloatArray
+    stretched: AnyArray
     layout: Layout
     points: AnyArray
     levels: AnyArray
     enhancement: FloatArray
     laws: Laws
     hold: Hold
-    plane_stress: bool
 
 
 class Stresses(NamedTuple):
@@ -73,9 +76,10 @@ class Filled(NamedTuple):
 
     Attributes
     ----------
-    K : ndarray, shape (range, values + 3 modes, padded)
-        Transposed condensed tangents of a range of elements; only rows and columns of nodal values count.
-    r : ndarray, shape (elements, values, 2)
+    K : ndarray, shape (range, most, padded)
+        Transposed condensed tangents of a range of elements; only rows and columns of nodal values count. There is
+        room for 3 modes more.
+    r : ndarray, shape (2, elements, values)
         Residuals as they are, and condensed.
     gain : ndarray, shape (elements, 3 modes, values)
     offset : ndarray, shape (elements, 3 modes)
@@ -124,17 +128,19 @@ def fill(
     size, tangent = nodal + 3 * modes, request.tangent
     full = size + rest
     v, T, radial = np.zeros(full), np.zeros((rest, 4, 3)), np.zeros(rest)
-    wide = padded(size)
+    wide = padded(max(size, nodal + layout.s))
     scratch, vectors, forces = np.zeros((4, wide)), np.zeros((5, 3)), np.zeros((size, 2))
     g, H = np.zeros((SIZE, 3)), np.zeros((SIZE, PADDED))
     GH, HG = np.zeros((size, PADDED)), np.zeros((SIZE, wide))
     r_sum, factor = np.zeros(size), np.zeros((3 * modes, 3 * modes + nodal + 1))
     records = workspace()
     w = records[0]
-    at_points = Request(request.flux_density, request.mixed, tangent or body.plane_stress)
+    across = np.zeros((4, body.levels.shape[2]))
     for e in range(first, min(first + len(out.K), len(body.elements))):
-        nodes, Kt, r = body.elements[e], out.K[e - first], out.r[e]
+        nodes, Kt, r = body.elements[e], out.K[e - first], out.r[0, e]
         gather(nodes, state, state.alpha[e], layout, v)
+        if body.stretched[e]:
+            stretch_directors(nodes, body.normals[e], state, layout, v)
         spin_derivatives(v, layout, T)
         forces[:, :], radial[:] = 0.0, 0.0
         if tangent:
@@ -142,17 +148,11 @@ def fill(
         out.energy[e, :] = 0.0
         for p in range(body.points.shape[1]):
             point, levels, enhancement = body.points[e, p], body.levels[e, p], body.enhancement[e, p]
+            levels = levels[: point.levels]
             point_values(point, enhancement, layout, v, w.x)
-            eliminated = not body.plane_stress
-            for _ in range(ELIMINATION_STEPS):
-                J = section(w, point, levels, body.laws, at_points, stresses.S[e, p], stresses.kappa[e, p])
-                if not J > 0.0:
-                    return e, J
-                eliminated = eliminated or eliminate_stretch(w, levels[len(levels) - 1].z)
-                if eliminated:
-                    break
-            if not eliminated:
-                return e, 0.0
+            J = section(w, point, levels, body.laws, request, stresses.S[e, p], stresses.kappa[e, p], across)
+            if not J > 0.0:
+                return e, J
             out.energy[e, INTERNAL] += w.energy[INTERNAL]
             out.energy[e, MAGNETIC] += w.energy[MAGNETIC]
             for stage in range(3 if tangent else 1):  # one call: the compiler makes one copy of `contract`
@@ -174,7 +174,7 @@ def fill(
         for l in range(size):
             r_sum[l] = forces[l, INTERNAL] + forces[l, MAGNETIC]
             if l < nodal:
-                r[l, 0] = r_sum[l]
+                r[l] = r_sum[l]
                 kind = 0 if l < layout.at_w else 1 if l < layout.at_phi else 2 if l < layout.at_q else 3
                 out.scale[kind, INTERNAL] += forces[l, INTERNAL] ** 2
                 out.scale[kind, MAGNETIC] += forces[l, MAGNETIC] ** 2
@@ -190,7 +190,15 @@ def fill(
             if not condense(Kt, r_sum, nodal, out.gain[e], out.offset[e], factor):
                 return e, 0.0
             for l in range(nodal):
-                r[l, 1] = r_sum[l]
+                out.r[1, e, l] = r_sum[l]
+        if body.stretched[e]:
+            normals = body.normals[e]
+            if tangent:
+                chain_matrix(nodes, normals, state, layout, r, Kt)
+                chain_row(nodes, normals, state, layout, out.r[1, e])
+                for a in range(3 * modes):
+                    chain_row(nodes, normals, state, layout, out.gain[e, a])
+            chain_row(nodes, normals, state, layout, r)
     return -1, 1.0
 
 
@@ -209,18 +217,28 @@ def _gather_increment(nodes: IntArray, increment: FloatArray, layout: Layout, dv
 
 
 @Kernel
-def predict_stresses(body: Body, state: State, increment: FloatArray, d_alpha: FloatArray, stresses: Stresses) -> None:
-    """Fill the stresses predicted linearly from `state` for a nodal increment (nodes, 10) and Δα."""
+def predict_stresses(
+    body: Body,
+    state: State,
+    flux_density: FloatArray,
+    increment: FloatArray,
+    d_alpha: FloatArray,
+    stresses: Stresses,
+) -> None:
+    """Fill the stresses predicted linearly from `state` for a nodal increment (nodes, 11) and Δα, in a field (3,), T."""
     layout = body.layout
     modes, rest, at = layout.modes, layout.q, layout.at_q
     full = layout.nodal + rest + 3 * modes
     v, dv, spins = np.zeros(full), np.zeros(full), np.zeros(layout.nodal)
-    T, records = np.zeros((rest, 4, 3)), workspace()
+    T, records, across = np.zeros((rest, 4, 3)), workspace(), np.zeros((4, body.levels.shape[2]))
     w = records[0]
     for e in range(len(body.elements)):
         nodes = body.elements[e]
         gather(nodes, state, state.alpha[e], layout, v)
         _gather_increment(nodes, increment, layout, spins)
+        if body.stretched[e]:
+            stretch_directors(nodes, body.normals[e], state, layout, v)
+            stretch_increments(nodes, body.normals[e], state, increment, layout, spins)
         for l in range(at):
             dv[l] = spins[l]
         spin_derivatives(v, layout, T)
@@ -235,9 +253,10 @@ def predict_stresses(body: Body, state: State, increment: FloatArray, d_alpha: F
                 dv[at + 4 * rest + i * modes + m] = d_alpha[e, m, i]
         for p in range(body.points.shape[1]):
             point, levels, enhancement = body.points[e, p], body.levels[e, p], body.enhancement[e, p]
+            levels, S, kappa = levels[: point.levels], stresses.S[e, p], stresses.kappa[e, p]
             point_values(point, enhancement, layout, v, w.x)
             point_values(point, enhancement, layout, dv, w.dx)
-            predicted_stress(w, point, levels, body.laws, stresses.S[e, p], stresses.kappa[e, p])
+            predicted_stress(w, point, levels, body.laws, flux_density, S, kappa, across)
 
 
 def are_compiled() -> bool:

@@ -22,7 +22,8 @@ NODES = 8
 INTERNAL, MAGNETIC, MIXED = 0, 1, 2
 
 #: A point of the mid-surface: base A_α (m), director D and D,α, metric c^αβ of the couple stress (N m), and functions
-#: of the element's nodes (see `Interpolation`; those of fewer nodes come first).
+#: of the element's nodes (see `Interpolation`; those of fewer nodes come first). How many levels it has, and whether each
+#: has a stretch of its own (`level_stretch.py`).
 POINT = np.dtype(
     [
         ("A", float, (2, 3)),
@@ -33,17 +34,22 @@ POINT = np.dtype(
         ("director", float, (3, NODES)),
         ("phi", float, (NODES,)),
         ("rotation", float, (3, NODES)),
+        ("levels", np.int64),
+        ("by_level", np.int64),
     ]
 )
-#: A level z (m) of a point: dual base G^i (1/m), volume (m³), remanence (T), and which laws hold there.
+#: A level z (m) of a point: its height (m), dual base G^i (1/m), volume (m³), remanence (T), which laws hold there, and
+#: by how much its transverse shear exceeds the director's, as a share of it.
 LEVEL = np.dtype(
     [
         ("z", float),
+        ("height", float),
         ("volume", float),
         ("G", float, (3, 3)),
         ("remanence", float, (3,)),
         ("material", np.int64),
         ("coupling", np.int64),
+        ("warping", float),
     ]
 )
 #: Scratch arrays of one thread. Tensors of fourth order are (81,): index [p, j, q, l] at 27 p + 9 j + 3 q + l.
@@ -58,19 +64,26 @@ WORKSPACE = np.dtype(
         ("base", float, (3, 3)),
         ("U", float, (3, 3)),
         ("P", float, (3, 3)),
+        ("U_law", float, (3, 3)),
         ("U_inverse_transpose", float, (3, 3)),
         ("S", float, (3, 3)),
         ("C", float, (81,)),
         ("C_half", float, (81,)),
         ("dU", float, (3, 3)),
         ("dP", float, (3, 3)),
+        ("dg", float, (3, 3)),
         ("t", float, (3, 3)),
         ("t_mixed", float, (3, 3)),
         ("m", float, (3,)),
         ("n", float, (3,)),
         ("b", float, (3,)),
-        ("d2z", float, (3,)),
+        ("dg3", float, (3,)),
         ("t3", float, (3,)),
+        ("spin", float, (3,)),
+        ("leg", float, (3, 3)),
+        ("shear", float, (3,)),
+        ("row", float, (Q + 3,)),
+        ("column", float, (Q + 3,)),
         ("gradients", float, (GRADIENTS,)),
         ("forces", float, (WORK + 1,)),
         ("work_tangent", float, (WORK, WORK)),

@@ -9,6 +9,8 @@ z² φ,α d and z² φ d,α dropped as there; ā enhances F[0]):
 
     g_1 = a_1 + z d_1,   g_2 = a_2 + z d_2,   g_3 = (1 + 2 z φ) d + ā,      F = g_i ⊗ G^i,   U = R̃ᵀF.
 
+In place of φ each level may have a stretch of its own, g_3 = (1 + ζ_k) d + ā, eliminated here (`level_stretch.py`).
+
 With the stress vectors t^i = R̃ P G^i and the spin ω of R̃, the variation of U is that of g_i at rest relative to the
 micro-rotation, δg_i - δω × g_i, so that per unit volume
 
@@ -28,23 +30,26 @@ from typing import NamedTuple
 
 import numpy as np
 
-from magshell.arrays import AnyArray, FloatArray, IntArray
-from magshell.compiled import call, inline
-from magshell.magnetics.law import OMEGA, WORK, M
+from magshell.arrays import AnyArray, FloatArray
+from magshell.compiled import inline
+from magshell.magnetics.law import OMEGA, M
 from magshell.materials.tensors import fill_inverse_transpose
 from magshell.shell.couple_stress import couple_stress
 from magshell.shell.kinematics import base_vectors, moduli_on_legs, stress_vectors, stretch
+from magshell.shell.level import Laws, carry, stress, work
+from magshell.shell.level_stretch import (
+    FORCE,
+    STIFFNESS,
+    ZETA,
+    constrain_levels,
+    eliminate_level,
+    force_and_stiffness,
+    force_rate,
+    predict_level_stretch,
+    solve_level_stretch,
+)
 from magshell.shell.point import ENHANCED, INTERNAL, MAGNETIC, MIXED, PHI, Q1, U1, W1, Q, Record, W
 from magshell.shell.rotation import LAST, NEXT, rotation_matrix, spin_map, wryness_maps
-
-
-class Laws(NamedTuple):
-    """The laws of a body: addresses (n,) for kernels, and parameters (n, most), of materials and of couplings."""
-
-    materials: IntArray
-    material_parameters: FloatArray
-    couplings: IntArray
-    coupling_parameters: FloatArray
 
 
 class Request(NamedTuple):
@@ -93,14 +98,13 @@ def _level_hessian(w: Record) -> None:
 
 
 @inline
-def _scatter_level(w: Record, z: float, volume: float) -> None:
+def _scatter_level(w: Record, z: float, s: float, scale: float, volume: float) -> None:
     """Chain (g_1, g_2, g_3, ω) to (u,α  w,α  w  ā  φ  ω): add to H, H_gω, H_ωg.
 
-    b^a = G^a · B̃ carries the coupling's tangent by m; d2z = 2 z d; t3 is the whole stress vector t^3 of the bilinear
-    term.
+    g_3 = s d + ā, and dg3 = ∂g_3/∂φ = scale d; at the place of φ may be ζ. b^a = G^a · B̃ carries the coupling's tangent
+    by m; t3 is the whole stress vector t^3 of the bilinear term.
     """
-    s = 1.0 + 2.0 * z * w.x[PHI]
-    b, d2z, H, K_g, K_gω, H_gω, H_ωg, T = w.b, w.d2z, w.H, w.K_g, w.K_gω, w.H_gω, w.H_ωg, w.work_tangent
+    b, dg3, H, K_g, K_gω, H_gω, H_ωg, T = w.b, w.dg3, w.H, w.K_g, w.K_gω, w.H_gω, w.H_ωg, w.work_tangent
     for a in range(3):
         a1, ca1, a2, ca2 = (12, s, 15, 1.0) if a == 2 else (3 * a, 1.0, 6 + 3 * a, z)
         b_a = volume * b[a]
@@ -115,14 +119,14 @@ def _scatter_level(w: Record, z: float, volume: float) -> None:
                     H[a2 + i, c1 + j] += ca2 * cc1 * h
                     H[a2 + i, c2 + j] += ca2 * cc2 * h
                     if c == 2:
-                        column += h * d2z[j]
+                        column += h * dg3[j]
                     if a == 2:
-                        H[PHI, c1 + j] += d2z[i] * cc1 * h
-                        H[PHI, c2 + j] += d2z[i] * cc2 * h
+                        H[PHI, c1 + j] += dg3[i] * cc1 * h
+                        H[PHI, c2 + j] += dg3[i] * cc2 * h
             H[a1 + i, PHI] += ca1 * column
             H[a2 + i, PHI] += ca2 * column
             if a == 2:
-                H[PHI, PHI] += d2z[i] * column
+                H[PHI, PHI] += dg3[i] * column
             for j in range(3):
                 h_gω = K_gω[a, i, j] + b_a * T[M + i, OMEGA + j]
                 h_ωg = K_gω[a, i, j] + b_a * T[OMEGA + j, M + i]
@@ -131,11 +135,11 @@ def _scatter_level(w: Record, z: float, volume: float) -> None:
                 H_ωg[j, a1 + i] += ca1 * h_ωg
                 H_ωg[j, a2 + i] += ca2 * h_ωg
                 if a == 2:
-                    H_gω[PHI, j] += d2z[i] * h_gω
-                    H_ωg[j, PHI] += d2z[i] * h_ωg
+                    H_gω[PHI, j] += dg3[i] * h_gω
+                    H_ωg[j, PHI] += dg3[i] * h_ωg
     for i in range(3):
-        H[PHI, W + i] += 2.0 * z * w.t3[i]
-        H[W + i, PHI] += 2.0 * z * w.t3[i]
+        H[PHI, W + i] += scale * w.t3[i]
+        H[W + i, PHI] += scale * w.t3[i]
 
 
 @inline
@@ -182,32 +186,6 @@ def _mix(w: Record, S_mixed: FloatArray) -> None:
 
 
 @inline
-def _stress(w: Record, laws: Laws, material: int) -> float:
-    """Fill P and C; returns the strain energy per volume. A law that raises an error leaves NaN."""
-    w.memory_after[0] = np.nan
-    parameters, address = laws.material_parameters[material], laws.materials[material]
-    energy: float = call(address, parameters, w.U, w.memory, 0.0, 0.0, w.P, w.C, w.memory_after)
-    w.P[0, 0] += w.memory_after[0]
-    return energy + w.memory_after[0]
-
-
-@inline
-def _work(w: Record, laws: Laws, coupling: int, B: FloatArray) -> float:
-    """Fill the coupling's forces and tangent; returns its energy per volume. A law that raises an error leaves NaN."""
-    forces, tangent = w.forces, w.work_tangent
-    forces[WORK] = np.nan
-    for i in range(WORK):
-        forces[i] = 0.0
-        for j in range(WORK):
-            tangent[i, j] = 0.0
-    parameters, address = laws.coupling_parameters[coupling], laws.couplings[coupling]
-    energy: float = call(address, parameters, w.m, w.n, B, w.gradients, forces, tangent)
-    for i in range(WORK):
-        forces[i] += forces[WORK]
-    return energy + forces[WORK]
-
-
-@inline
 def section(
     w: Record,
     point: Record,
@@ -216,40 +194,42 @@ def section(
     request: Request,
     S_mixed: FloatArray,
     kappa_mixed: FloatArray,
+    across: FloatArray,
 ) -> float:
     """Gradient and Hessian of a point that sees w.x; returns the least det F through the thickness.
 
     Fills the internal and the magnetic column of w.g; with a tangent also w.H, and the column of w.g that is the whole
-    gradient which the geometric part is made with. Sets w.energy, elastic and magnetic. A point with det F <= 0 leaves
-    them unfinished.
+    gradient which the geometric part is made with. Sets w.energy, elastic and magnetic. A point with det F <= 0, or
+    whose levels have no equilibrium (0), leaves them unfinished. `across` (4, levels) is scratch.
     """
-    x, g, V, base, t, b, m, n, d2z, couples = w.x, w.g, w.V, w.base, w.t, w.b, w.m, w.n, w.d2z, w.couples
-    forces, tangent = w.forces, request.tangent
+    x, g, V, base, t, b, dg3, couples = w.x, w.g, w.V, w.base, w.t, w.b, w.dg3, w.couples
+    forces, tangent, by_level, c = w.forces, request.tangent, point.by_level != 0, 0.0
     _clear(w, tangent)
     n2 = rotation_matrix(x[Q : Q + 4], w.R)
     spin_map(x[Q : Q + 4], n2, V)
+    if by_level and not solve_level_stretch(w, point, levels, laws, request.flux_density, across):
+        return 0.0
     least = np.inf
     for k in range(len(levels)):
-        z, volume, G, rem = levels[k].z, levels[k].volume, levels[k].G, levels[k].remanence
-        base_vectors(point, z, x, base)
+        z, volume, G = levels[k].z, levels[k].volume, levels[k].G
+        zeta, scale = (across[ZETA, k], 1.0) if by_level else (0.0, 2.0 * z)
+        s = 1.0 + 2.0 * z * x[PHI] + zeta
+        base_vectors(point, z, zeta, x, base)
         J = stretch(w.R, base, G, w.U)
         least = min(least, J)
         if not J > 0.0:
             return J
-        w.energy[INTERNAL] += volume * _stress(w, laws, levels[k].material)
+        w.energy[INTERNAL] += volume * stress(w, point.D, levels[k], laws)
         stress_vectors(w.R, w.P, G, volume, t)
-        for a in range(3):
-            b[a] = G[a, 0] * rem[0] + G[a, 1] * rem[1] + G[a, 2] * rem[2]
+        carry(w, G, levels[k].remanence)
         for i in range(3):
-            m[i] = b[0] * base[0, i] + b[1] * base[1, i] + b[2] * base[2, i]
-            n[i] = w.R[i, 0] * rem[0] + w.R[i, 1] * rem[1] + w.R[i, 2] * rem[2]
-            d2z[i] = 2.0 * z * (point.D[i] + x[W + i])
-        w.energy[MAGNETIC] += volume * _work(w, laws, levels[k].coupling, request.flux_density)
+            dg3[i] = scale * (point.D[i] + x[W + i])
+        w.energy[MAGNETIC] += volume * work(w, laws, levels[k].coupling, request.flux_density)
         for i in range(3):
             couples[MAGNETIC, i] += volume * forces[OMEGA + i]
             force = volume * forces[M + i]
-            _add_stress_vector(w, INTERNAL, i, z, t[0, i], t[1, i], t[2, i])
-            _add_stress_vector(w, MAGNETIC, i, z, b[0] * force, b[1] * force, b[2] * force)
+            _add_stress_vector(w, INTERNAL, i, z, s, t[0, i], t[1, i], t[2, i])
+            _add_stress_vector(w, MAGNETIC, i, z, s, b[0] * force, b[1] * force, b[2] * force)
             j, l = NEXT[i], LAST[i]
             for a in range(3):
                 couples[INTERNAL, i] -= base[a, j] * t[a, l] - base[a, l] * t[a, j]
@@ -263,7 +243,13 @@ def section(
                 w.t3[i] = w.t_mixed[2, i] + volume * b[2] * forces[M + i]
                 for l in range(3):
                     w.H_ωω[i, l] += volume * w.work_tangent[OMEGA + i, OMEGA + l]
-            _scatter_level(w, z, volume)
+            _scatter_level(w, z, s, scale, volume)
+            if by_level:
+                c += eliminate_level(w, levels[k].height)
+    if by_level:
+        g[PHI, INTERNAL], g[PHI, MAGNETIC] = 0.0, 0.0
+        if tangent:
+            constrain_levels(w, c)
     for i in range(3):
         couples[MIXED, i] += couples[MAGNETIC, i]
     for r in range(4):
@@ -282,19 +268,20 @@ def _clear(w: Record, tangent: bool) -> None:
     w.couples[:, :], w.energy[:], w.g[:, :] = 0.0, 0.0, 0.0
     if tangent:
         w.H[:, :], w.H_gω[:, :], w.H_ωg[:, :], w.H_ωω[:, :] = 0.0, 0.0, 0.0, 0.0
+        w.row[:], w.column[:] = 0.0, 0.0
 
 
 @inline
-def _add_stress_vector(w: Record, column: int, i: int, z: float, t1: float, t2: float, t3: float) -> None:
+def _add_stress_vector(w: Record, column: int, i: int, z: float, s: float, t1: float, t2: float, t3: float) -> None:
     """Chain component i of the stress vectors to the gradient with respect to (u,α  w,α  w  ā  φ)."""
     g = w.g
     g[U1 + i, column] += t1
     g[U1 + 3 + i, column] += t2
     g[W1 + i, column] += z * t1
     g[W1 + 3 + i, column] += z * t2
-    g[W + i, column] += (1.0 + 2.0 * z * w.x[PHI]) * t3
+    g[W + i, column] += s * t3
     g[ENHANCED + i, column] += t3
-    g[PHI, column] += w.d2z[i] * t3
+    g[PHI, column] += w.dg3[i] * t3
 
 
 @inline
@@ -303,30 +290,36 @@ def predicted_stress(
     point: Record,
     levels: AnyArray,
     laws: Laws,
+    flux_density: FloatArray,
     S_mixed: FloatArray,
     kappa_mixed: FloatArray,
+    across: FloatArray,
 ) -> None:
-    """Fill S' = U⁻¹ (P + C : ΔU - ΔU S) (levels, 3, 3), κ' = κ + Δκ (2, 3), linear in the increment w.dx (31,)."""
-    x, dx, g, t, S, C, P = w.x, w.dx, w.base, w.t, w.S, w.C, w.P
-    q, dq, ω, dU, dP = x[Q : Q + 4], dx[Q : Q + 4], w.n, w.dU, w.dP
+    """Fill S' = U⁻¹ (P + C : ΔU - ΔU S) (levels, 3, 3), κ' = κ + Δκ (2, 3), linear in the increment w.dx (31,).
+
+    `across` (4, levels) is scratch.
+    """
+    x, dx, S, C, P, dU, dP = w.x, w.dx, w.S, w.C, w.P, w.dU, w.dP
+    q, dq, ω, zeta, by_level = x[Q : Q + 4], dx[Q : Q + 4], w.spin, across[3], point.by_level != 0
     n2 = rotation_matrix(q, w.R)
     spin_map(q, n2, w.V)
     for i in range(3):
         ω[i] = 2.0 * (w.V[i, 0] * dq[0] + w.V[i, 1] * dq[1] + w.V[i, 2] * dq[2] + w.V[i, 3] * dq[3])
+    if by_level:
+        solve_level_stretch(w, point, levels, laws, flux_density, across)
+        for k in range(len(levels)):
+            zeta[k] = across[ZETA, k]
+            _, across[STIFFNESS, k] = force_and_stiffness(w, point, levels[k], laws, flux_density, zeta[k])
+            _increments(w, point, levels[k], zeta[k], 0.0)
+            across[FORCE, k] = force_rate(w, point, levels[k], ω)
+            across[ZETA, k] = 0.0
+        predict_level_stretch(levels, across)
     for k in range(len(levels)):
-        z, G = levels[k].z, levels[k].G
-        base_vectors(point, z, x, g)
-        stretch(w.R, g, G, w.U)
-        _stress(w, laws, levels[k].material)
-        for i in range(3):
-            d = point.D[i] + x[W + i]
-            t[0, i] = dx[U1 + i] + z * dx[W1 + i]
-            t[1, i] = dx[U1 + 3 + i] + z * dx[W1 + 3 + i]
-            t[2, i] = (1.0 + 2.0 * z * x[PHI]) * dx[W + i] + 2.0 * z * dx[PHI] * d + dx[ENHANCED + i]
-        for a in range(3):
-            for i in range(3):
-                t[a, i] -= ω[NEXT[i]] * g[a, LAST[i]] - ω[LAST[i]] * g[a, NEXT[i]]
-        stretch(w.R, t, G, dU)
+        own, change = (zeta[k], across[ZETA, k]) if by_level else (0.0, 0.0)
+        base_vectors(point, levels[k].z, own, x, w.base)
+        stretch(w.R, w.base, levels[k].G, w.U)
+        stress(w, point.D, levels[k], laws)
+        _increments(w, point, levels[k], own, change)
         _second_stress(w, S)
         for i in range(3):
             for j in range(3):
@@ -347,3 +340,19 @@ def predicted_stress(
             for r in range(4):
                 value += w.L[i, r] * dx[at + r] + w.M[i, r] * dq[r]
             kappa_mixed[a, i] = value
+
+
+@inline
+def _increments(w: Record, point: Record, level: Record, zeta: float, d_zeta: float) -> None:
+    """Fill dg and dU = R̃ᵀ (dg_i - ω × g_i) ⊗ G^i along w.dx, the spin w.spin and an increment of ζ."""
+    x, dx, g, t, dg, ω, z = w.x, w.dx, w.base, w.t, w.dg, w.spin, level.z
+    for i in range(3):
+        d = point.D[i] + x[W + i]
+        dg[0, i] = dx[U1 + i] + z * dx[W1 + i]
+        dg[1, i] = dx[U1 + 3 + i] + z * dx[W1 + 3 + i]
+        s = 1.0 + 2.0 * z * x[PHI] + zeta
+        dg[2, i] = s * dx[W + i] + (2.0 * z * dx[PHI] + d_zeta) * d + dx[ENHANCED + i]
+    for i in range(3):
+        for a in range(3):
+            t[a, i] = dg[a, i] - (ω[NEXT[i]] * g[a, LAST[i]] - ω[LAST[i]] * g[a, NEXT[i]])
+    stretch(w.R, t, level.G, w.dU)
