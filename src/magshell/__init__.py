@@ -22,7 +22,9 @@ if TYPE_CHECKING:
     )
     from magshell.materials import MicropolarMooneyRivlin, MicropolarNeoHookean, MicropolarStVenantKirchhoff
     from magshell.model.loads import Force, Gravity, Moment, Pressure, Traction
+    from magshell.model import thickness
     from magshell.model.model import Model
+    from magshell.model.region import Layer, Region
     from magshell.model.shell import Shell
     from magshell.model.stages import Stage
     from magshell.model.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane
@@ -40,6 +42,7 @@ _HOME = {
     ),
     "magshell.materials": ("MicropolarMooneyRivlin", "MicropolarNeoHookean", "MicropolarStVenantKirchhoff"),
     "magshell.model.model": ("Model",),
+    "magshell.model.region": ("Layer", "Region"),
     "magshell.model.shell": ("Shell",),
     "magshell.solver": ("CriticalPoint", "Observer", "Path", "Settings", "SolveError", "Step", "resume", "solve"),
     "magshell.solver.buckling": ("Buckling", "BucklingMode", "buckling"),
@@ -51,6 +54,7 @@ _MODULES = {
     "problem": "magshell.problem",
     "remanence": "magshell.magnetics.remanence",
     "results": "magshell.results",
+    "thickness": "magshell.model.thickness",
 }
 _NAMES = {name: home for home, names in _HOME.items() for name in names}
 
@@ -63,6 +67,7 @@ __all__ = [
     "Force",
     "Gravity",
     "InputError",
+    "Layer",
     "MeshError",
     "MicroRotationEnergy",
     "MicropolarCouple",
@@ -75,6 +80,7 @@ __all__ = [
     "Path",
     "Prescribe",
     "Pressure",
+    "Region",
     "Settings",
     "Shell",
     "SimpleSupport",
@@ -91,6 +97,7 @@ __all__ = [
     "results",
     "resume",
     "solve",
+    "thickness",
 ]
 
 

@@ -6,12 +6,10 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
+from magshell.materials import Material
 from magshell.model.model import Model
 from magshell.shell.body import Make, Reference, Surface, of_elements, reference_of
 from magshell.shell.geometry import Sections, least_shifts
-
-# Gauss points through the thickness.
-LEVELS = 2
 
 
 def reference_of_model(model: Model, make: Make) -> Reference:
@@ -32,22 +30,35 @@ def reference_of_model(model: Model, make: Make) -> Reference:
 
 
 def make_of(model: Model) -> Make:
-    """Thickness, material and laws of each element, from the regions of the shell."""
-    regions, count = model.shell.regions, len(model.shell.mesh.elements)
-    parent, weights = np.polynomial.legendre.leggauss(LEVELS)
-    thickness, material_of = np.empty(count), np.empty((count, LEVELS), dtype=np.int64)
-    for number, region in enumerate(regions):
-        thickness[region.elements], material_of[region.elements] = region.thickness, number
-    half = 0.5 * thickness[:, None]
-    remanence = model.shell.remanence_at_points
+    """Thickness, material and laws of each element, from the parts of the shell."""
+    parts, count = model.shell.parts, len(model.shell.mesh.elements)
+    levels = max(part.levels * len(part.layers) for part in parts)
+    points = parts[0].remanence.shape[1]
+    thickness, z, heights = np.empty(count), np.zeros((count, levels)), np.zeros((count, levels))
+    material_of, remanence = np.zeros((count, levels), dtype=np.int64), np.zeros((count, points, levels, 3))
+    materials: list[Material] = []
+    for part in parts:
+        parent, weights = np.polynomial.legendre.leggauss(part.levels)
+        of_layers = part.at_points.mean(axis=1)
+        thickness[part.elements] = of_layers.sum(axis=1)
+        below = -0.5 * thickness[part.elements] - part.offset_at_points.mean(axis=1)
+        for number, layer in enumerate(part.layers):
+            at = np.arange(number * part.levels, (number + 1) * part.levels)
+            half = 0.5 * of_layers[:, number, None]
+            z[np.ix_(part.elements, at)] = (below[:, None] + half) + half * parent
+            heights[np.ix_(part.elements, at)] = half * weights
+            material_of[np.ix_(part.elements, at)] = len(materials)
+            remanence[part.elements[:, None], :, at] = part.remanence[:, None, :, number]
+            below = below + of_layers[:, number]
+            materials.append(layer.material)
     return Make(
         thickness=thickness,
-        sections=Sections(half * parent, half * weights),
-        remanence=np.broadcast_to(remanence[:, :, None], (*remanence.shape[:2], LEVELS, 3)),
-        materials=[region.material for region in regions],
+        sections=Sections(z, heights),
+        remanence=remanence,
+        materials=materials,
         material_of=material_of,
         couplings=[model.coupling],
-        coupling_of=np.zeros((count, LEVELS), dtype=np.int64),
+        coupling_of=np.zeros((count, levels), dtype=np.int64),
         plane_stress=model.shell.thickness_stretch == "plane-stress",
     )
 

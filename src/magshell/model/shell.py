@@ -1,50 +1,37 @@
-"""The shell: mid-surface, thickness, material, remanence, element type; validated once."""
+"""The shell: mid-surface, what it is made of, element type; validated once."""
 
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from magshell.arrays import AnyArray, FloatArray, IntArray
+from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError, suggest
-from magshell.magnetics.remanence import Remanence, constant
+from magshell.magnetics.remanence import Remanence
 from magshell.mesh import Mesh
+from magshell.model.parts import Draft, Part, checked_material, drafts_of, parts_of, positive
+from magshell.model.region import NO_REMANENCE, Layer, Region
+from magshell.model.thickness import Thickness
 from magshell.shell.elements import ELEMENTS, QUADRATIC
 
 STRETCHES = ("linear", "none", "plane-stress")
-NO_REMANENCE = constant((0.0, 0.0, 0.0))
-
-
-class Region(NamedTuple):
-    """Elements of one make.
-
-    Attributes
-    ----------
-    elements : ndarray, shape (n,)
-    thickness : float
-        m.
-    material : Material
-    """
-
-    elements: IntArray
-    thickness: float
-    material: Any
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Shell:
-    """A shell of one material and thickness.
+    """A shell: thickness, material, remanence and density hold for the elements that are in no region.
 
     Parameters
     ----------
     mesh : Mesh
-        Mid-surface.
-    thickness : float
-        m.
-    material : Material
+        Mid-surface, unless there is an offset.
+    thickness : float or Thickness, optional
+        m; see `magshell.thickness` for one that varies. Needed unless there are layers, or regions hold all elements.
+    material : Material, optional
         A law with its parameters, for instance `MicropolarNeoHookean`.
     remanence : Remanence, optional
         Remanent flux density of the undeformed material, see `magshell.remanence`; by default none.
@@ -56,52 +43,55 @@ class Shell:
     density : float, optional
         Mass per undeformed volume, kg/m³; gravity needs it.
     micro_rotation : bool, optional
-        False: the classical shell of seven parameters (u, w, φ). The material's coupling_modulus and length_scale must
+        False: the classical shell of seven parameters (u, w, φ). The materials' coupling_modulus and length_scale must
         then be 0, and only `DeformationGradientEnergy` can couple a field to it.
+    regions : sequence of Region, optional
+        Elements that are of another make.
+    layers : sequence of Layer, optional
+        From the bottom (the side that the normal points away from) to the top, in place of thickness, material and
+        remanence.
+    offset : {"middle", "top", "bottom"} or float, optional
+        Where the mesh lies: in the mid-plane, at the top or the bottom face, or this far above the mid-plane along the
+        normal, m.
+    levels : int, optional
+        Gauss points through the thickness of each layer.
 
     Raises
     ------
     InputError
-        Values out of their range; a curved mesh that is too thick for its radius of curvature.
+        Values out of their range; regions that overlap, or elements in none; a curved mesh that is too thick for its
+        radius of curvature.
     """
 
     mesh: Mesh
-    thickness: float
-    material: Any
+    thickness: float | Thickness | None = None
+    material: Any = None
     remanence: Remanence = NO_REMANENCE
     element: Any = QUADRATIC
     thickness_stretch: str = "linear"
     micro_rotation: bool = True
     density: float | None = None
+    regions: Sequence[Region] = ()
+    layers: Sequence[Layer] = ()
+    offset: str | float = "middle"
+    levels: int = 2
+    _drafts: list[Draft] = dataclasses.field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        thickness = _positive("shell: thickness", self.thickness, "m")
-        if thickness > self.mesh.size:
-            raise InputError(
-                f"shell: thickness is {thickness:g} m, larger than the body ({self.mesh.size:g} m); check the units"
-            )
+        put = object.__setattr__
+        put(self, "regions", tuple(self.regions))
+        put(self, "layers", tuple(self.layers))
         if self.density is not None:
-            object.__setattr__(self, "density", _positive("shell: density", self.density, "kg/m^3"))
-        values = []
-        for name, value in zip(self.material._fields, self.material, strict=True):
-            value = float(value)
-            where = f"material: {name}"
-            positive = name == "shear_modulus" or (name == "length_scale" and self.micro_rotation)
-            if not np.isfinite(value) or value < 0.0 or (value == 0.0 and positive):
-                allowed = "positive" if positive else "zero or positive"
-                raise InputError(f"{where} is {value:g}; it must be finite and {allowed}")
-            values.append(value)
-            if not self.micro_rotation and name in ("coupling_modulus", "length_scale") and value > 0.0:
-                raise InputError(f"{where} is {value:g}; without micro-rotation it must be 0")
-        material = type(self.material)(*values)
-        for problem in material.problems():
-            raise InputError(f"material: {problem}")
-        object.__setattr__(self, "thickness", thickness)
-        object.__setattr__(self, "material", material)
+            put(self, "density", positive("shell: density", self.density, "kg/m^3"))
+        if self.thickness is not None and not callable(self.thickness):
+            put(self, "thickness", positive("shell: thickness", self.thickness, "m"))
+        if self.material is not None:
+            put(self, "material", checked_material("material", self.material, self.micro_rotation))
+        put(self, "_drafts", drafts_of(self))
         if isinstance(self.element, str):
             if self.element not in ELEMENTS:
                 raise InputError(f"shell: element is '{self.element}'. {suggest(self.element, ELEMENTS)}")
-            object.__setattr__(self, "element", ELEMENTS[self.element])
+            put(self, "element", ELEMENTS[self.element])
         if self.mesh.triangles.any():
             if self.element.with_triangles is None:
                 able = " or ".join(f"'{name}'" for name, element in ELEMENTS.items() if element.with_triangles)
@@ -109,37 +99,57 @@ class Shell:
                     f"shell: element is '{self.element.name}', which has no triangles, and element "
                     f"{int(np.argmax(self.mesh.triangles))} of the mesh is one; use {able}"
                 )
-            object.__setattr__(self, "element", self.element.with_triangles)
+            put(self, "element", self.element.with_triangles)
         if self.thickness_stretch not in STRETCHES:
             raise InputError(
                 f"shell: thickness_stretch is '{self.thickness_stretch}'. {suggest(self.thickness_stretch, STRETCHES)}"
             )
+        if any(callable(layer.thickness) for draft in self._drafts for layer in draft.layers):
+            parts_of(self, self._drafts, remanence=False)
 
     def __repr__(self) -> str:
-        return f"Shell({self.mesh!r}, thickness {self.thickness:g} m, {self.material!r}, element '{self.element.name}')"
+        made = [] if self.thickness is None else [f"thickness {in_words(self.thickness)}"]
+        made += [] if self.material is None else [repr(self.material)]
+        made += [f"{len(self.layers)} layers"] if self.layers else []
+        made += [f"{len(self.regions)} regions"] if self.regions else []
+        return f"Shell({self.mesh!r}, {', '.join(made)}, element '{self.element.name}')"
 
-    @property
-    def regions(self) -> tuple[Region, ...]:
-        """The shell by regions: together they hold every element once."""
-        return (Region(np.arange(len(self.mesh.elements)), self.thickness, self.material),)
+    @cached_property
+    def parts(self) -> tuple[Part, ...]:
+        """The shell by parts of one make, the elements in no region first: together they hold every element once.
+
+        Raises
+        ------
+        InputError
+            The remanence is not finite in an element.
+        """
+        return parts_of(self, self._drafts)
+
+    @cached_property
+    def part_of(self) -> AnyArray:
+        """Number of the part (elements,) of each element."""
+        numbers = np.empty(len(self.mesh.elements), dtype=np.int64)
+        for number, draft in enumerate(self._drafts):
+            numbers[draft.elements] = number
+        return numbers
 
     @cached_property
     def remanence_at_points(self) -> FloatArray:
-        """Remanence at the integration points, (elements, points, 3), T.
+        """Remanence at the integration points, its mean over the thickness, (elements, points, 3), T.
 
         Raises
         ------
         InputError
             It is not finite in an element.
         """
-        coordinates = self.mesh.points[self.mesh.elements]
-        points, _ = self.element.integration(coordinates)
-        positions = np.einsum("epn,enx->epx", self.element.functions(8, points, coordinates).values, coordinates)
-        remanence = np.ascontiguousarray(self.remanence(self.mesh, positions), dtype=float)
-        bad = np.flatnonzero(~np.isfinite(remanence).all(axis=(1, 2)))
-        if bad.size:
-            raise InputError(f"remanence: it is not finite in element {bad[0]}")
-        return remanence
+        mean = np.empty((len(self.mesh.elements), self.parts[0].remanence.shape[1], 3))
+        for part in self.parts:
+            if len(part.layers) == 1:
+                mean[part.elements] = part.remanence[:, :, 0]
+            else:
+                shares = part.at_points / part.at_points.sum(axis=2, keepdims=True)
+                mean[part.elements] = np.einsum("epl,eplx->epx", shares, part.remanence)
+        return mean
 
     @property
     def carriers(self) -> dict[str, AnyArray]:
@@ -153,11 +163,6 @@ class Shell:
         return carriers
 
 
-def _positive(where: str, value: Any, unit: str) -> float:
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise InputError(f"{where} is {value!r}; it must be a number ({unit})") from None
-    if not np.isfinite(number) or number <= 0.0:
-        raise InputError(f"{where} is {number:g} {unit}; it must be positive and finite")
-    return number
+def in_words(thickness: float | Thickness) -> str:
+    """A number in m, or that it varies."""
+    return "varies" if callable(thickness) else f"{thickness:g} m"

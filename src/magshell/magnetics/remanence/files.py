@@ -68,7 +68,7 @@ def from_file(
         return per_element(tesla * table.wanted)
     if length_unit is None:
         raise InputError(f"{path.name}: has the columns {','.join(PLACE)}; length_unit must say in which unit")
-    _one_value_each(path, table, "Keep one of the lines")
+    check_one_value_each(path, table, "Keep one of the lines")
     return at_places(factor(length_unit, units.LENGTH) * table.optional, tesla * table.wanted, tolerance)
 
 
@@ -118,11 +118,11 @@ def displaced_from_file(file: str | os.PathLike[str], length_unit: str = "m") ->
     if table.optional is None:
         return Deformed(metre * table.wanted)
     advice = "At a slit, leave the places out and give a line for each node, in the order of the mesh"
-    _one_value_each(path, table, advice)
+    check_one_value_each(path, table, advice)
     return DisplacementsAtPlaces(metre * table.optional, metre * table.wanted, path.name)
 
 
-def _one_value_each(file: pathlib.Path, table: Table, advice: str) -> None:
+def check_one_value_each(file: pathlib.Path, table: Table, advice: str) -> None:
     """Refuse a place that stands in a table twice, with different values."""
     assert table.optional is not None
     found = duplicate(table.optional, table.wanted)

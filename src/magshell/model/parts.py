@@ -1,0 +1,396 @@
+"""From the shell and its regions to parts: together every element once, each with its layers as arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from magshell.arrays import AnyArray, FloatArray, IntArray
+from magshell.errors import InputError, suggest
+from magshell.magnetics.remanence import Remanence
+from magshell.mesh import Mesh
+from magshell.model.region import NO_REMANENCE, OFFSETS, Group, Layer, Region
+from magshell.model.thickness import Thickness
+from magshell.shell.elements import ElementType
+
+MOST_LEVELS = 16
+REST = "shell"
+
+
+class Part(NamedTuple):
+    """Elements of one make, with all that was left out filled in.
+
+    Attributes
+    ----------
+    name : str
+        Of the groups of the region; "shell" for what is in no region.
+    elements : ndarray, shape (n,)
+    layers : tuple of Layer
+        From the bottom to the top; one for a region without layers.
+    layered : bool
+        Whether it was given in layers, which stretch across the thickness each by itself.
+    levels : int
+        Gauss points through the thickness of each layer.
+    at_points, at_nodes : ndarray, shape (n, p, layers) and (n, 8, layers)
+        Thickness of each layer at the integration points and at the nodes of the elements, m.
+    offset_at_points, offset_at_nodes : ndarray, shape (n, p) and (n, 8)
+        Of the mesh from the mid-plane, along the normal, m.
+    remanence : ndarray, shape (n, p, layers, 3)
+        At the integration points, T.
+    """
+
+    name: str
+    elements: IntArray
+    layers: tuple[Layer, ...]
+    layered: bool
+    levels: int
+    at_points: FloatArray
+    at_nodes: FloatArray
+    offset_at_points: FloatArray
+    offset_at_nodes: FloatArray
+    remanence: FloatArray
+
+
+class Draft(NamedTuple):
+    """A part before its arrays are made; `where` names it in messages, `label` among the keys of the shell."""
+
+    name: str
+    where: str
+    elements: IntArray
+    layers: tuple[Layer, ...]
+    layered: bool
+    levels: int
+    offset: str | float
+
+
+class Made(Protocol):
+    """What is asked of a shell here."""
+
+    @property
+    def mesh(self) -> Mesh: ...
+    @property
+    def thickness(self) -> float | Thickness | None: ...
+    @property
+    def material(self) -> Any: ...
+    @property
+    def remanence(self) -> Remanence: ...
+    @property
+    def density(self) -> float | None: ...
+    @property
+    def layers(self) -> Sequence[Layer]: ...
+    @property
+    def offset(self) -> str | float: ...
+    @property
+    def levels(self) -> int: ...
+    @property
+    def regions(self) -> Sequence[Region]: ...
+    @property
+    def element(self) -> ElementType: ...
+    @property
+    def micro_rotation(self) -> bool: ...
+
+
+def drafts_of(shell: Made) -> list[Draft]:
+    """The parts of a shell without their arrays: first the elements in no region, if there are any.
+
+    Raises
+    ------
+    InputError
+        Regions that overlap or have no elements; something missing; values out of their range.
+    """
+    _check_layers("shell", shell.layers, shell.thickness, shell.material, None)
+    if shell.layers and shell.remanence is not NO_REMANENCE:
+        raise InputError("shell: remanence is given beside layers; each layer has its own")
+    given = {"thickness": shell.thickness, "material": shell.material}
+    missing = [] if shell.layers else [what for what, value in given.items() if value is None]
+    found, owner = [], np.full(len(shell.mesh.elements), -1)
+    names = [_name(number, region.group) for number, region in enumerate(shell.regions)]
+    for number, region in enumerate(shell.regions):
+        where = f"regions[{number}]"
+        if isinstance(region.group, str) or names[number] != where:
+            where += f" ('{names[number]}')"
+        members = _members(shell.mesh, where, region.group)
+        taken = members[owner[members] >= 0]
+        if taken.size:
+            raise InputError(
+                f"{where}: element {taken[0]} is already in the region '{names[owner[taken[0]]]}'; "
+                "one of them must give it up"
+            )
+        owner[members] = number
+        found.append(_draft(shell, region, names[number], where, members))
+    left = np.flatnonzero(owner < 0)
+    if left.size and missing:
+        if not shell.regions or len(missing) == 1:
+            raise InputError(f"shell: {missing[0]} is missing" + _of_regions(left, names))
+        raise InputError(
+            f"shell: element {left[0]} is in none of the regions ({', '.join(names)}); put it into one, or give the "
+            f"shell a thickness and a material, for all that are in none ({left.size} elements)"
+        )
+    if left.size:
+        found.insert(0, _draft(shell, None, REST, "shell", left))
+    return found
+
+
+def parts_of(shell: Made, drafts: Sequence[Draft], remanence: bool = True) -> tuple[Part, ...]:
+    """The drafts with their arrays; without the remanence that is zero.
+
+    Raises
+    ------
+    InputError
+        Thickness or remanence that is not finite, or thickness that is not positive, in an element.
+    """
+    coordinates = shell.mesh.points[shell.mesh.elements]
+    points, weights = shell.element.integration(coordinates)
+    varying = any(callable(layer.thickness) for draft in drafts for layer in draft.layers)
+    positions = np.zeros((0, weights.shape[1], 3))
+    if varying or remanence:
+        positions = np.einsum("epn,enx->epx", shell.element.functions(8, points, coordinates).values, coordinates)
+    flux = _Sampled(shell.mesh, positions, drafts, lambda layer: layer.remanence)
+    at_points, at_nodes = (
+        _Sampled(shell.mesh, places, drafts, lambda layer: layer.thickness) for places in (positions, coordinates)
+    )
+    parts = []
+    for draft in drafts:
+        count = len(draft.elements)
+        heights = [
+            np.stack(
+                [
+                    sampled.of(layer.thickness, draft.elements)
+                    if callable(layer.thickness)
+                    else np.full((count, places), float(layer.thickness))
+                    for layer in draft.layers
+                ],
+                axis=-1,
+            )
+            for sampled, places in ((at_points, weights.shape[1]), (at_nodes, 8))
+        ]
+        if varying:
+            _check_heights(shell.mesh, draft, heights)
+        offsets = [_offset(draft.offset, height.sum(axis=-1)) for height in heights]
+        vectors = np.zeros((*heights[0].shape, 3))
+        if remanence:
+            for number, layer in enumerate(draft.layers):
+                if layer.remanence is not NO_REMANENCE:
+                    vectors[:, :, number] = flux.of(layer.remanence, draft.elements)
+            _check_remanence(draft, vectors)
+        parts.append(
+            Part(
+                name=draft.name,
+                elements=draft.elements,
+                layers=draft.layers,
+                layered=draft.layered,
+                levels=draft.levels,
+                at_points=heights[0],
+                at_nodes=heights[1],
+                offset_at_points=offsets[0],
+                offset_at_nodes=offsets[1],
+                remanence=vectors,
+            )
+        )
+    return tuple(parts)
+
+
+class _Sampled:
+    """What callables of the layers give at places (elements, p, 3): each is asked once, for all elements that use it."""
+
+    def __init__(self, mesh: Mesh, places: FloatArray, drafts: Sequence[Draft], what: Any) -> None:
+        self._mesh, self._places, self._drafts, self._what = mesh, places, drafts, what
+        self._known: dict[int, FloatArray] = {}
+
+    def of(self, sample: Any, elements: IntArray) -> FloatArray:
+        """Values at the places of some elements."""
+        if id(sample) not in self._known:
+            users = [
+                draft.elements for draft in self._drafts if any(self._what(layer) is sample for layer in draft.layers)
+            ]
+            asked = self._places
+            if sum(map(len, users)) < len(asked):
+                asked = np.full(self._places.shape, np.nan)
+                for members in users:
+                    asked[members] = self._places[members]
+            self._known[id(sample)] = np.asarray(sample(self._mesh, asked), dtype=float)
+        return self._known[id(sample)][elements]
+
+
+def _of_regions(left: IntArray, names: Sequence[str]) -> str:
+    return f"; element {left[0]} is in none of the regions ({', '.join(names)})" if names else ""
+
+
+def _name(number: int, group: Group) -> str:
+    if isinstance(group, str):
+        return group
+    if len(group) and all(isinstance(one, str) for one in group):
+        return ", ".join(map(str, group))
+    return f"regions[{number}]"
+
+
+def _members(mesh: Mesh, where: str, group: Group) -> IntArray:
+    try:
+        if isinstance(group, str):
+            return mesh.elements_of(group)
+        if len(group) and all(isinstance(one, str) for one in group):
+            return np.unique(np.concatenate([mesh.elements_of(str(one)) for one in group]))
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+    numbers = np.asarray(group)
+    if not numbers.size:
+        raise InputError(f"{where}: has no elements")
+    if numbers.ndim != 1 or numbers.dtype.kind not in "iu":
+        raise InputError(f"{where}: group is {group!r}; it must be an element group, several, or numbers of elements")
+    if numbers.min() < 0 or numbers.max() >= len(mesh.elements):
+        raise InputError(f"{where}: there is no element {numbers.max()}; the mesh has {len(mesh.elements)}")
+    if len(np.unique(numbers)) != len(numbers):
+        raise InputError(f"{where}: an element is listed twice")
+    return np.sort(numbers).astype(np.int64)
+
+
+def _draft(shell: Made, region: Region | None, name: str, where: str, members: IntArray) -> Draft:
+    given = Region(group="") if region is None else region
+    _check_layers(where, given.layers, given.thickness, given.material, given.remanence)
+    density = shell.density if given.density is None else positive(f"{where}: density", given.density, "kg/m^3")
+    layers = tuple(given.layers)
+    if not layers and given.thickness is None and given.material is None and given.remanence is None:
+        layers = tuple(shell.layers)
+    layered = bool(layers)
+    if not layers:
+        thickness = shell.thickness if given.thickness is None else given.thickness
+        material = shell.material if given.material is None else given.material
+        for what, value in (("thickness", thickness), ("material", material)):
+            if value is None:
+                raise InputError(f"{where}: {what} is missing" + (", and the shell has layers" if shell.layers else ""))
+        layers = (Layer(thickness, material, shell.remanence if given.remanence is None else given.remanence),)
+    resolved = []
+    for number, layer in enumerate(layers):
+        at = f"{where}: layers[{number}]" if layered else where
+        of_material = f"{at}: material" if layered or region is not None and region.material is not None else "material"
+        thickness = layer.thickness if callable(layer.thickness) else positive(f"{at}: thickness", layer.thickness, "m")
+        own = density if layer.density is None else positive(f"{at}: density", layer.density, "kg/m^3")
+        resolved.append(
+            Layer(thickness, checked_material(of_material, layer.material, shell.micro_rotation), layer.remanence, own)
+        )
+    _check_size(where, resolved, shell.mesh.size)
+    levels = _levels(where, shell.levels if given.levels is None else given.levels, len(resolved))
+    offset = _checked_offset(where, shell.offset if given.offset is None else given.offset, shell.mesh.size)
+    return Draft(name, where, members, tuple(resolved), layered, levels, offset)
+
+
+def _check_layers(where: str, layers: Any, *others: Any) -> None:
+    if isinstance(layers, Layer) or not all(isinstance(layer, Layer) for layer in layers):
+        raise InputError(f"{where}: layers must be a list of Layer")
+    for name, value in zip(("thickness", "material", "remanence"), others, strict=True):
+        if len(layers) and value is not None:
+            raise InputError(f"{where}: {name} is given beside layers; each layer has its own")
+
+
+def _check_size(where: str, layers: Sequence[Layer], size: float) -> None:
+    thickness = sum(float(layer.thickness) for layer in layers if not callable(layer.thickness))
+    if thickness > size:
+        raise InputError(f"{where}: thickness is {thickness:g} m, larger than the body ({size:g} m); check the units")
+
+
+def _levels(where: str, levels: Any, layers: int) -> int:
+    least = 2 if layers == 1 else 1
+    if isinstance(levels, bool) or not isinstance(levels, int | np.integer) or not least <= levels <= MOST_LEVELS:
+        raise InputError(
+            f"{where}: levels is {levels!r}; it must be a whole number from {least} to {MOST_LEVELS}"
+            + (" (one level does not bend)" if levels == 1 else "")
+        )
+    return int(levels)
+
+
+def _checked_offset(where: str, offset: Any, size: float) -> str | float:
+    if isinstance(offset, str):
+        if offset not in OFFSETS:
+            raise InputError(f"{where}: offset is '{offset}'; or give a length. {suggest(offset, OFFSETS)}")
+        return offset
+    try:
+        length = float(offset)
+    except (TypeError, ValueError):
+        raise InputError(f"{where}: offset is {offset!r}; it must be a length (m) or one of {OFFSETS}") from None
+    if not abs(length) <= size:
+        raise InputError(f"{where}: offset is {length:g} m, larger than the body ({size:g} m); check the units")
+    return length
+
+
+def _offset(offset: str | float, thickness: FloatArray) -> FloatArray:
+    match offset:
+        case "middle":
+            return np.zeros(thickness.shape)
+        case "top":
+            return 0.5 * thickness
+        case "bottom":
+            return -0.5 * thickness
+    return np.full(thickness.shape, float(offset))
+
+
+def _check_heights(mesh: Mesh, draft: Draft, heights: Sequence[FloatArray]) -> None:
+    """Thickness that varies is known only where it is asked for."""
+    for height in heights:
+        bad = ~(np.isfinite(height) & (height > 0.0))
+        if bad.any():
+            row, place, layer = (int(index) for index in np.argwhere(bad)[0])
+            of_layer = f"layers[{layer}]: " if draft.layered else ""
+            raise InputError(
+                f"{draft.where}: {of_layer}thickness is {height[row, place, layer]:g} m in element "
+                f"{draft.elements[row]}; it must be positive and finite"
+            )
+        too_thick = height.sum(axis=-1) > mesh.size
+        if too_thick.any():
+            row, place = (int(index) for index in np.argwhere(too_thick)[0])
+            raise InputError(
+                f"{draft.where}: thickness is {height[row, place].sum():g} m in element {draft.elements[row]}, larger "
+                f"than the body ({mesh.size:g} m); check the units"
+            )
+
+
+def _check_remanence(draft: Draft, vectors: FloatArray) -> None:
+    bad: AnyArray = ~np.isfinite(vectors).all(axis=(1, 3))
+    if bad.any():
+        row, layer = (int(index) for index in np.argwhere(bad)[0])
+        where = f"{draft.where}: layers[{layer}]: " if draft.layered else ""
+        raise InputError(f"{where}remanence: it is not finite in element {draft.elements[row]}")
+
+
+def checked_material(where: str, material: Any, micro_rotation: bool) -> Any:
+    """A material whose parameters are finite numbers in their range.
+
+    Raises
+    ------
+    InputError
+        They are not, or they are of a micro-rotation that the shell does not have.
+    """
+    if not hasattr(material, "_fields") or not hasattr(material, "problems"):
+        raise InputError(f"{where} is {material!r}; it must be a material law with its parameters")
+    values = []
+    for name, value in zip(material._fields, material, strict=True):
+        value = float(value)
+        positive_ = name == "shear_modulus" or (name == "length_scale" and micro_rotation)
+        if not np.isfinite(value) or value < 0.0 or (value == 0.0 and positive_):
+            allowed = "positive" if positive_ else "zero or positive"
+            raise InputError(f"{where}: {name} is {value:g}; it must be finite and {allowed}")
+        values.append(value)
+        if not micro_rotation and name in ("coupling_modulus", "length_scale") and value > 0.0:
+            raise InputError(f"{where}: {name} is {value:g}; without micro-rotation it must be 0")
+    checked = type(material)(*values)
+    for problem in checked.problems():
+        raise InputError(f"{where}: {problem}")
+    return checked
+
+
+def positive(where: str, value: Any, unit: str) -> float:
+    """A positive finite number.
+
+    Raises
+    ------
+    InputError
+        It is not.
+    """
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise InputError(f"{where} is {value!r}; it must be a number ({unit})") from None
+    if not np.isfinite(number) or number <= 0.0:
+        raise InputError(f"{where} is {number:g} {unit}; it must be positive and finite")
+    return number
