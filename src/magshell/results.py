@@ -174,8 +174,8 @@ def writers(source: Problem, directory: pathlib.Path) -> list[Observer]:
 def _waypoints(source: Problem, files: Iterable[pathlib.Path], origins: list[Origin]) -> Iterator[Waypoint]:
     """The steps in order, each checked; what they were made with goes into a list."""
     own = copies.digest(source)
-    mesh, modes = source.model.shell.mesh, source.model.shell.element.vectors
-    shapes = (len(mesh.points), 3), (len(mesh.elements), modes, 3)
+    model = source.model
+    shapes = (len(model.rows.of), 3), (len(model.shell.mesh.elements), model.shell.element.vectors, 3)
     most, before = step_checks.most_bytes(source.model), None
     for number, file in enumerate(files):
         waypoint, origin = checkpoint.read_step(file, most)

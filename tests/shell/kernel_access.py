@@ -39,7 +39,8 @@ def _section(points, levels, laws, request, e, p, x, S, kappa, energy, g, H):
     records = workspace()
     w = records[0]
     w.x[:] = x
-    least = section(w, points[e, p], levels[e, p], laws, request, S, kappa)
+    across = np.zeros((4, levels.shape[2]))
+    least = section(w, points[e, p], levels[e, p][: points[e, p].levels], laws, request, S, kappa, across)
     energy[:], g[:, :], H[:, :] = w.energy, w.g, w.H[:, : len(x)]
     return least
 

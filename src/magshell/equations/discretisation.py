@@ -14,7 +14,7 @@ from magshell.equations.frames import to_frames, to_global
 from magshell.equations.insertion import Insertion
 from magshell.equations.instant import STATIC, Increment, Instant, Prediction
 from magshell.equations.loads import LoadTerm
-from magshell.equations.numbering import Numbering, Ordering, columns_of
+from magshell.equations.numbering import Numbering, Ordering
 from magshell.equations.shell import ShellTerm
 from magshell.equations.term import Term, squares_by_kind
 from magshell.model.course import Loading
@@ -36,8 +36,9 @@ class Assembly(NamedTuple):
         Condensed tangent of the free unknowns; the next assembly overwrites its values.
     right_side : ndarray, shape (dofs,)
         Minus the condensed residual and the imposed increments' share.
-    residual : ndarray, shape (nodes, 10)
-        Internal minus external forces in the nodes' frames; at held components the reactions.
+    residual : ndarray, shape (rows, 11)
+        Internal minus external forces in the nodes' frames; at held components the reactions. What rows share is in
+        that of the mesh node.
     relative : dict of str to float
         Residual by kind of unknown over the elements' internal and magnetic forces and the loads of that kind.
     """
@@ -76,23 +77,26 @@ class Discretisation:
         Arrays of the undeformed shell.
     materials : sequence of Material
         Of the regions of the shell.
-    carried, free : ndarray of bool, shape (nodes, 10)
+    rows : Rows
+        Of the nodal arrays: the nodes of the mesh first.
+    carried, free : ndarray of bool, shape (rows, 11)
         Which unknowns there are, and which of them no support holds.
     """
 
     def __init__(self, model: Model, ordering: Ordering) -> None:
         allocate_buffers()
-        self.model, self.mesh = model, model.shell.mesh
+        self.model, self.mesh, self.rows = model, model.shell.mesh, model.rows
         make = make_of(model)
         self.reference, self.materials = reference_of_model(model, make), make.materials
-        self.shell = ShellTerm(self.reference, len(self.mesh.points), stiffest_of(make))
+        self.shell = ShellTerm(self.reference, len(self.rows.of), stiffest_of(make))
         self.loads = LoadTerm(model.applied, model.constraints)
         self.terms: Sequence[Term] = (self.shell, self.loads) if model.applied else (self.shell,)
-        self.carried = columns_of(model.shell.carriers)
+        self.carried = self.rows.carried
         self.free = self.carried & ~model.constraints.fixed
         cliques = [clique for term in self.terms for clique in term.couplings()]
-        self.numbering = Numbering(self.free, cliques, ordering)
+        self.numbering = Numbering(self.rows, self.free, cliques, ordering)
         self.dofs = self.numbering.dofs
+        self._thickness = float(make.thickness.mean())
         self._insertion = Insertion(self.numbering, model.constraints)
         self.shell.place(self.numbering, model.constraints)
         self.loads.place(self._insertion)
@@ -105,7 +109,7 @@ class Discretisation:
 
     def undeformed(self) -> State:
         """State of no deformation."""
-        return State.undeformed(len(self.mesh.points), len(self.mesh.elements), self.reference.body.layout.modes)
+        return State.undeformed(len(self.rows.of), len(self.mesh.elements), self.reference.body.layout.modes)
 
     def assemble(self, instant: Instant, imposed: FloatArray | None = None, tangent: bool = True) -> Assembly:
         """Residual and tangent at an instant.
@@ -114,7 +118,7 @@ class Discretisation:
         ----------
         instant : Instant
             Field and loads are those of its loading; what is held is the state's.
-        imposed : ndarray, shape (nodes, 10), optional
+        imposed : ndarray, shape (nodes, 11), optional
             Increments of held components, in the nodes' frames, that the right side accounts for.
         tangent : bool
             Without it only the residual is made.
@@ -128,10 +132,10 @@ class Discretisation:
         if insertion is not None:
             insertion.data[:] = 0.0
         parts = [term.evaluate(instant, STATIC, insertion, imposed) for term in self.terms]
-        residual = _sum(part.residual for part in parts)
+        residual = self.rows.folded(_sum(part.residual for part in parts))
         right_side = np.zeros(self.dofs)
         if tangent:
-            condensed = _sum(part.condensed for part in parts)
+            condensed = self.rows.folded(_sum(part.condensed for part in parts))
             right_side[self.numbering.equations] = -condensed[self.free]
         squares = _sum(part.scale for part in parts)
         inner = max(part.inner for part in parts)
@@ -145,18 +149,18 @@ class Discretisation:
         nothing imposed.
         """
         direction = np.zeros(self.dofs)
-        change = _sum(term.load_rate(instant, rate) for term in self.terms)
+        change = self.rows.folded(_sum(term.load_rate(instant, rate) for term in self.terms))
         direction[self.numbering.equations] = -change[self.free]
         if np.any(rate.held):
             moving = self.assemble(instant, self.imposed(rate.held)).right_side
             direction += moving - assembly.right_side
         return direction
 
-    def predicted(self, state: State, increment: Increment | None = None) -> Prediction:
+    def predicted(self, instant: Instant, increment: Increment | None = None) -> Prediction:
         """What the mixed tangent takes of a state after an increment, linear in it; by default of the state itself."""
         if increment is None:
-            increment = Increment(np.zeros((len(self.mesh.points), COMPONENTS)), np.zeros_like(state.alpha))
-        return self.shell.predict(state, increment)
+            increment = Increment(np.zeros((len(self.rows.of), COMPONENTS)), np.zeros_like(instant.state.alpha))
+        return self.shell.predict(instant, increment)
 
     def correction(self, solution: FloatArray) -> Increment:
         """Increment of all unknowns that a solution (dofs,) of the last tangent makes with its right side."""
@@ -169,24 +173,24 @@ class Discretisation:
         return Increment(nodal, self.shell.recovered(nodal, whole=False))
 
     def _expanded(self, solution: FloatArray, imposed: FloatArray | None) -> FloatArray:
-        nodal = np.zeros((len(self.mesh.points), COMPONENTS)) if imposed is None else imposed.copy()
+        nodal = np.zeros((len(self.rows.of), COMPONENTS)) if imposed is None else imposed.copy()
         nodal[self.free] = solution[self.numbering.equations]
-        return self.to_global(nodal)
+        return self.to_global(self.rows.shared(nodal))
 
     def to_global(self, nodal: FloatArray) -> FloatArray:
-        """Turn nodal columns (nodes, 10) from the nodes' frames to the global axes."""
+        """Turn nodal columns (nodes, 11) from the nodes' frames to the global axes."""
         return to_global(self.model.constraints, nodal)
 
     def to_frames(self, nodal: FloatArray) -> FloatArray:
-        """Turn nodal columns (nodes, 10) from the global axes to the nodes' frames."""
+        """Turn nodal columns (nodes, 11) from the global axes to the nodes' frames."""
         return to_frames(self.model.constraints, nodal)
 
     def imposed(self, held: FloatArray) -> FloatArray:
-        """What is held of nodal values (nodes, 10) in the nodes' frames; zero elsewhere."""
+        """What is held of nodal values (nodes, 11) in the nodes' frames; zero elsewhere."""
         return np.where(self.model.constraints.fixed, held, 0.0)
 
     def with_imposed(self, increment: Increment, held: FloatArray) -> Increment:
-        """An increment whose held components are put to values (nodes, 10) in the nodes' frames."""
+        """An increment whose held components are put to values (nodes, 11) in the nodes' frames."""
         fixed = self.model.constraints.fixed
         return Increment(self.to_global(np.where(fixed, held, self.to_frames(increment.nodal))), increment.alpha)
 
@@ -195,26 +199,26 @@ class Discretisation:
         units = np.array([self._unit(column) for column in range(COMPONENTS)])
         magnitudes = np.abs(increment.nodal) / units
         node, column = np.unravel_index(np.argmax(magnitudes), magnitudes.shape)
-        position = ", ".join(f"{1e3 * x:.4g}" for x in self.mesh.points[node])
-        return float(magnitudes[node, column]), f"{UNKNOWNS[column]} of node {node} at ({position}) mm"
+        position = ", ".join(f"{1e3 * x:.4g}" for x in self.mesh.points[self.rows.of[node]])
+        return float(magnitudes[node, column]), f"{UNKNOWNS[column]} of node {self.rows.of[node]} at ({position}) mm"
 
     def _unit(self, column: int) -> float:
         if column < COLUMNS["u"].stop:
             return self.mesh.size
-        return 1.0 / self.model.shell.thickness if column == COLUMNS["phi"].start else 1.0
+        return 1.0 / self._thickness if column == COLUMNS["phi"].start else 1.0
 
     def _relative(self, residual: FloatArray, squares: FloatArray, inner: float) -> dict[str, float]:
         """Norms by kind above their round-off, over the elements' forces and the loads of that kind.
 
-        α has the unit of w (both work on directors) and is measured against the same forces. The forces of u vanish in
-        pure bending; they count for no less than the moments over the body's size.
+        s and α have the unit of w (all work on directors) and are measured against the same forces. The forces of u
+        vanish in pure bending; they count for no less than the moments over the body's size.
         """
         free = residual * self.free
         norms = np.sqrt([*squares_by_kind(free), inner**2])
         scales = np.sqrt(squares)
         scales[0] = max(scales[0], scales[1] / self.mesh.size, scales[3] / self.mesh.size)
         above = np.maximum(norms - self._noise, 0.0)
-        relative = np.divide(above, scales[[0, 1, 2, 3, 1]], out=above.copy(), where=above > 0.0)
+        relative = np.divide(above, scales[[0, 1, 2, 3, 1, 1]], out=above.copy(), where=above > 0.0)
         return dict(zip(KINDS, relative.tolist(), strict=True))
 
 

@@ -10,12 +10,12 @@ from magshell.shell.unknowns import COLUMNS
 
 
 def to_global(constraints: Constraints, nodal: FloatArray) -> FloatArray:
-    """Turn nodal columns (nodes, 10) from the nodes' frames to the global axes."""
+    """Turn nodal columns (nodes, 11) from the nodes' frames to the global axes."""
     return _turned(constraints, nodal, "nji,nj->ni")
 
 
 def to_frames(constraints: Constraints, nodal: FloatArray) -> FloatArray:
-    """Turn nodal columns (nodes, 10) from the global axes to the nodes' frames."""
+    """Turn nodal columns (nodes, 11) from the global axes to the nodes' frames."""
     return _turned(constraints, nodal, "nij,nj->ni")
 
 

@@ -33,7 +33,7 @@ def destination(elements: Elements, numbering: Numbering) -> Destination:
 
 
 def summed(to: Destination, forces: FloatArray, nodes: int) -> FloatArray:
-    """Forces (elements, values) of all elements, summed at the nodes (nodes, 10)."""
+    """Forces (elements, values) of all elements, summed at the nodes (nodes, 11)."""
     flat = np.bincount(to.entry.ravel(), forces.ravel(), COMPONENTS * nodes)
     return np.asarray(flat, dtype=float).reshape(nodes, COMPONENTS)
 

@@ -51,7 +51,7 @@ class Increment:
 
     Attributes
     ----------
-    nodal : ndarray, shape (nodes, 10)
+    nodal : ndarray, shape (nodes, 11)
         Of u, w, φ and spins, global axes.
     alpha : ndarray, shape (elements, modes, 3)
         Of the elements' own parameters.

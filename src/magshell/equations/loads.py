@@ -39,7 +39,8 @@ class LoadTerm:
         undeformed = State.undeformed(len(free), 0, 0)
         carrying = np.zeros(len(free), dtype=bool)
         for one in self._applied:
-            carrying |= np.any(one.forces(undeformed)[:, COLUMNS["omega"]], axis=1)
+            couples = np.flatnonzero(np.any(one.forces(undeformed)[:, COLUMNS["omega"]], axis=1))
+            carrying[couples] = True
         nodes = np.flatnonzero(carrying & np.all(free[:, COLUMNS["omega"]], axis=1))
         self._couples = Pairs("omega", "omega", nodes, nodes)
         self._couples_at = insertion.blocks(self._couples)
@@ -50,11 +51,12 @@ class LoadTerm:
         return [np.unique(np.sort(one, axis=1), axis=0) for one in pairs if len(one)]
 
     def forces(self, state: State, amplitudes: FloatArray) -> FloatArray:
-        """Sum of the loads (nodes, 10), global axes: N on u, N m on directors and spins."""
+        """Sum of the loads (nodes, 11), global axes: N on u, N m on directors and spins."""
         total = np.zeros((len(state.u), COMPONENTS))
         for amplitude, one in zip(amplitudes, self._applied, strict=True):
             if amplitude:
-                total += amplitude * one.forces(state)
+                forces = one.forces(state)
+                total[: len(forces)] += amplitude * forces
         return total
 
     def evaluate(
@@ -87,7 +89,7 @@ class LoadTerm:
         """See `Term`."""
         return -to_frames(self._constraints, self.forces(instant.state, rate.loads))
 
-    def predict(self, state: State, increment: Increment) -> Prediction:
+    def predict(self, instant: Instant, increment: Increment) -> Prediction:
         """See `Term`."""
         return None
 

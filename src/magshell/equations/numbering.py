@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from magshell.arrays import AnyArray, IntArray
-from magshell.shell.unknowns import COLUMNS, width
+from magshell.model.rows import Rows
 
 Ordering = Callable[[sp.csr_array], IntArray]
 
@@ -18,9 +18,12 @@ class Numbering:
 
     Parameters
     ----------
-    free : ndarray of bool, shape (nodes, 10)
+    rows : Rows
+        Of the nodal arrays.
+    free : ndarray of bool, shape (rows, 11)
+        Unknowns that a row has for itself and no support holds.
     cliques : sequence of ndarray, shape (n, m)
-        Nodes that are coupled with each other, row by row.
+        Rows that are coupled with each other, row by row.
     ordering : callable
         From the graph of the nodes (nodes, nodes) to their order of elimination.
 
@@ -28,23 +31,27 @@ class Numbering:
     ----------
     dofs : int
         Number of equations.
-    number : ndarray, shape (nodes, 10)
-        Equation, -1 where fixed or absent.
-    rank : ndarray, shape (nodes, 10)
-        Equation minus the node's first one.
+    number : ndarray, shape (rows, 11)
+        Equation, -1 where fixed or absent. Rows that share an unknown share its equation.
+    rank : ndarray, shape (rows, 11)
+        Equation minus the first one of the mesh node.
     indptr, indices : ndarray
         Of the tangent, compressed columns.
     """
 
-    def __init__(self, free: AnyArray, cliques: Sequence[IntArray], ordering: Ordering) -> None:
-        self.free = free
-        graph = graph_of(cliques, len(free))
+    def __init__(self, rows: Rows, free: AnyArray, cliques: Sequence[IntArray], ordering: Ordering) -> None:
+        self._of = rows.of
+        graph = graph_of([rows.of[clique] for clique in cliques], rows.nodes)
         order = ordering(graph)
-        counts = free.sum(axis=1)
-        first = np.empty(len(free), dtype=np.int64)
+        counts = np.bincount(rows.of, free.sum(axis=1), minlength=rows.nodes).astype(np.int64)
+        first = np.empty(rows.nodes, dtype=np.int64)
         first[order] = np.cumsum(counts[order]) - counts[order]
-        self.rank = np.cumsum(free, axis=1) - 1
-        self.number = np.where(free, first[:, None] + self.rank, -1)
+        by_node = np.argsort(rows.of, kind="stable")
+        rank = np.empty(free.shape, dtype=np.int64)
+        rank[by_node] = np.cumsum(free[by_node]).reshape(free.shape) - 1
+        rank -= (np.cumsum(counts) - counts)[rows.of][:, None]
+        self.rank = rows.shared(rank)
+        self.number = rows.shared(np.where(free, first[rows.of][:, None] + rank, -1))
         self.equations = self.number[free]
         self.dofs = int(counts.sum())
         self._set_pattern(graph, order, counts)
@@ -71,8 +78,9 @@ class Numbering:
         self.indices = rows[index].astype(np.int32)
 
     def offsets(self, columns: IntArray, rows: IntArray) -> IntArray:
-        """Place of the first row of nodes `rows` in the columns of nodes `columns`, from the columns' start."""
-        return np.asarray(self._offsets[columns.ravel(), rows.ravel()], dtype=np.int64).reshape(columns.shape) - 1
+        """Place of the first equation of nodes `rows` in the columns of nodes `columns`, from the columns' start."""
+        found = self._offsets[self._of[columns.ravel()], self._of[rows.ravel()]]
+        return np.asarray(found, dtype=np.int64).reshape(columns.shape) - 1
 
 
 def graph_of(cliques: Sequence[IntArray], nodes: int) -> sp.csr_array:
@@ -82,8 +90,3 @@ def graph_of(cliques: Sequence[IntArray], nodes: int) -> sp.csr_array:
     starts = np.concatenate([[0], np.cumsum(sizes)])
     incidence = sp.csr_array((np.ones(members.size, dtype=np.int32), members, starts), shape=(len(sizes), nodes))
     return sp.csr_array(incidence.T @ incidence)
-
-
-def columns_of(carriers: dict[str, AnyArray]) -> AnyArray:
-    """Which nodes have which columns of the nodal arrays: boolean (nodes, 10)."""
-    return np.column_stack([carriers[field] for field in COLUMNS for _ in range(width(field))])

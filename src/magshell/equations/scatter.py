@@ -33,7 +33,7 @@ class Destination(NamedTuple):
     elements : Elements
     entry : ndarray, shape (elements, values)
         Node and column of each value, as places of flat nodal arrays.
-    number, rank : ndarray, shape (nodes, 10)
+    number, rank : ndarray, shape (nodes, 11)
     indptr : ndarray, shape (equations + 1,)
     offset : ndarray, shape (elements, m, m)
         Of the first row of node I in the columns of node J, at [e, J, I].

@@ -20,7 +20,6 @@ from magshell.shell.body import Reference
 from magshell.shell.element import padded
 from magshell.shell.geometry import unit_forces
 from magshell.shell.section import Request
-from magshell.shell.state import State
 from magshell.shell.unknowns import COLUMNS, COMPONENTS
 
 ROUND_OFF = 8.0 * np.finfo(float).eps
@@ -43,14 +42,14 @@ class ShellTerm:
     def __init__(self, reference: Reference, nodes: int, stiffest: FloatArray) -> None:
         self.body, self._nodes = reference.body, nodes
         layout, count = self.body.layout, len(self.body.elements)
-        carrying = [layout.u] * 3 + [layout.w] * 3 + [layout.phi] + [layout.q] * 3
+        carrying = [layout.u] * 3 + [layout.w] * 3 + [layout.phi] + [layout.q] * 3 + [layout.s]
         node = np.concatenate([np.arange(number) for number in carrying])
         self.elements = Elements(self.body.elements, node, np.repeat(np.arange(COMPONENTS), carrying))
         values, inner = node.size, 3 * layout.modes
-        batch = min(BATCH, count)
+        batch, most = min(BATCH, count), max(values, layout.nodal + inner)
         self._filled = loops.Filled(
-            K=np.zeros((batch, values + inner, padded(values + inner))),
-            r=np.zeros((count, values, 2)),
+            K=np.zeros((batch, most, padded(most))),
+            r=np.zeros((2, count, values)),
             gain=np.zeros((count, inner, values)),
             offset=np.zeros((count, inner)),
             energy=np.zeros((count, 2)),
@@ -89,8 +88,8 @@ class ShellTerm:
                 raise InvertedElement(element, determinant)
             if insertion is not None:
                 self._insert(first, weights, insertion, imposed)
-        residual = self._at_nodes(filled.r[:, :, 0])
-        condensed = self._at_nodes(filled.r[:, :, 1]) if tangent else residual
+        residual = self._at_nodes(filled.r[0])
+        condensed = self._at_nodes(filled.r[1]) if tangent else residual
         scale, inner = filled.scale.sum(axis=1), float(np.sqrt(filled.enhancement_residual[0]))
         return Contribution(residual, condensed, scale, inner)
 
@@ -105,7 +104,7 @@ class ShellTerm:
         if imposed is not None:
             given = to_global(constraints, imposed).ravel()[self._to.entry[some]]
             K_given = np.einsum("ekl,ek->el", K[: len(given), :values, :values], given)
-            self._filled.r[some, :, 1] += weights.displacement * K_given
+            self._filled.r[1, some] += weights.displacement * K_given
         if len(constraints.frames):
             turn_matrices(self._to, first, K, constraints.frame_of, constraints.frames)
         add_matrices(self._to, first, K, weights.displacement, insertion.data)
@@ -126,13 +125,13 @@ class ShellTerm:
         )
         return np.asarray(after - now)
 
-    def predict(self, state: State, increment: Increment) -> Prediction:
-        """See `Term`. Where φ is eliminated at the points, stresses cannot be predicted from nodal values."""
-        if self.body.plane_stress:
-            return None
+    def predict(self, instant: Instant, increment: Increment) -> Prediction:
+        """See `Term`."""
         shape = self.body.levels.shape
         stresses = loops.Stresses(np.empty((*shape, 3, 3)), np.empty((*shape[:2], 2, 3)))
-        loops.predict_stresses(self.body, state, increment.nodal, increment.alpha, stresses)
+        loops.predict_stresses(
+            self.body, instant.state, instant.loading.flux_density, increment.nodal, increment.alpha, stresses
+        )
         return stresses
 
     def recovered(self, nodal: FloatArray, whole: bool) -> FloatArray:

@@ -11,7 +11,6 @@ from magshell.arrays import FloatArray, IntArray
 from magshell.equations.insertion import Insertion
 from magshell.equations.instant import Increment, Instant, Prediction, Weights
 from magshell.model.course import Loading
-from magshell.shell.state import State
 from magshell.shell.unknowns import COLUMNS
 
 
@@ -20,12 +19,12 @@ class Contribution(NamedTuple):
 
     Attributes
     ----------
-    residual : ndarray, shape (nodes, 10)
-    condensed : ndarray, shape (nodes, 10)
+    residual : ndarray, shape (nodes, 11)
+    condensed : ndarray, shape (nodes, 11)
         The same after the elimination of the unknowns that the term owns, plus the tangent's product with what is
         imposed.
-    scale : ndarray, shape (4,)
-        Sums of squares of the forces that the residual is made of, of u, w, φ and ω.
+    scale : ndarray, shape (5,)
+        Sums of squares of the forces that the residual is made of, of u, w, φ, ω and s.
     inner : float
         Norm of the residual of the unknowns that the term owns.
     """
@@ -56,7 +55,7 @@ class Term(Protocol):
         weights : Weights
         insertion : Insertion or None
             None: only the residual is made.
-        imposed : ndarray, shape (nodes, 10), or None
+        imposed : ndarray, shape (nodes, 11), or None
             Increments of held components, in the nodes' frames.
 
         Raises
@@ -65,23 +64,23 @@ class Term(Protocol):
         """
 
     def load_rate(self, instant: Instant, rate: Loading) -> FloatArray:
-        """Derivative of the residual (nodes, 10) along a rate of the loading, in the nodes' frames."""
+        """Derivative of the residual (nodes, 11) along a rate of the loading, in the nodes' frames."""
 
-    def predict(self, state: State, increment: Increment) -> Prediction:
+    def predict(self, instant: Instant, increment: Increment) -> Prediction:
         """What the mixed tangent takes of a state after an increment, linear in it; None: nothing."""
 
     def recovered(self, nodal: FloatArray, whole: bool) -> FloatArray | None:
-        """Increment of the unknowns that it owns, of the last tangent, for a nodal increment (nodes, 10), global axes.
+        """Increment of the unknowns that it owns, of the last tangent, for a nodal increment (nodes, 11), global axes.
 
         With `whole` it includes what their own residual asks for. None: the term owns none.
         """
 
     def noise(self) -> FloatArray:
-        """Norms (5,) that round-off makes of the residuals of u, w, φ, ω and of what it owns."""
+        """Norms (6,) that round-off makes of the residuals of u, w, φ, ω, s and of what it owns."""
 
 
 def squares_by_kind(nodal: FloatArray) -> FloatArray:
-    """Sums of squares (4,) of the columns (nodes, 10) of u, w, φ and ω."""
+    """Sums of squares (5,) of the columns (nodes, 11) of u, w, φ, ω and s."""
     starts = [columns.start for columns in COLUMNS.values()]
     return np.add.reduceat(np.einsum("nc,nc->c", nodal, nodal), starts)
 

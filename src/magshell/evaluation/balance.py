@@ -14,12 +14,13 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.equations.discretisation import Discretisation
-from magshell.evaluation.points import evaluate
+from magshell.evaluation.points import evaluate, level_stretch
 from magshell.magnetics import law
 from magshell.magnetics.law import OMEGA, M
 from magshell.model.course import Loading
 from magshell.shell.rotation import cross
 from magshell.shell.state import State
+from magshell.shell.unknowns import COLUMNS
 
 
 class Balance(NamedTuple):
@@ -76,7 +77,7 @@ def magnetic_torque(discretisation: Discretisation, state: State, flux_density: 
     a torque -(m × f + c), which is (1/mu0) m × B for the couple.
     """
     reference = discretisation.reference
-    fields, remanence = evaluate(reference, state), reference.remanence
+    fields, remanence = evaluate(reference, state, level_stretch(reference, state, flux_density)), reference.remanence
     m = np.einsum("epkxy,epky->epkx", fields.F, remanence)
     n = np.einsum("epxy,epky->epkx", fields.R, remanence)
     _, forces, _ = law.evaluate(discretisation.model.coupling, m, n, flux_density)
@@ -93,22 +94,23 @@ def balance(discretisation: Discretisation, state: State, loading: Loading, resi
     discretisation : Discretisation
     state : State
     loading : Loading
-    residual : ndarray, shape (nodes, 10)
+    residual : ndarray, shape (nodes, 11)
         Of that state, in the nodes' frames: at held components what the supports exert.
     """
     constraints = discretisation.model.constraints
+    nodes = len(discretisation.mesh.points)
     held = np.where(constraints.fixed & discretisation.carried, residual, 0.0)
-    reaction = discretisation.to_global(held)
-    load = discretisation.loads.forces(state, loading.loads)
-    position = discretisation.mesh.points + state.u
-    director = discretisation.normals + state.w
-    moments = cross(position, reaction[:, :3]) + cross(director, reaction[:, 3:6]) + reaction[:, 7:]
-    load_moments = cross(position, load[:, :3]) + cross(director, load[:, 3:6]) + load[:, 7:]
+    reaction = discretisation.to_global(held)[:nodes]
+    load = discretisation.loads.forces(state, loading.loads)[:nodes]
+    position = discretisation.mesh.points + state.u[:nodes]
+    director = discretisation.normals + state.w[:nodes]
+    moments = cross(position, reaction[:, :3]) + cross(director, reaction[:, 3:6]) + reaction[:, COLUMNS["omega"]]
+    load_moments = cross(position, load[:, :3]) + cross(director, load[:, 3:6]) + load[:, COLUMNS["omega"]]
     torque, torque_scale = magnetic_torque(discretisation, state, loading.flux_density)
     force_sum, load_sum = reaction[:, :3].sum(axis=0), load[:, :3].sum(axis=0)
     moment_sum, load_moment_sum = moments.sum(axis=0), load_moments.sum(axis=0)
     force_scale = _sum_of_magnitudes(reaction[:, :3]) + _sum_of_magnitudes(load[:, :3])
-    force_scale += _sum_of_magnitudes(load[:, 3:6] + load[:, 7:]) / discretisation.mesh.size
+    force_scale += _sum_of_magnitudes(load[:, 3:6] + load[:, COLUMNS["omega"]]) / discretisation.mesh.size
     moment_scale = _sum_of_magnitudes(moments) + _sum_of_magnitudes(load_moments) + torque_scale
     return Balance(
         force_sum,

@@ -10,7 +10,7 @@ import numpy as np
 from magshell.arrays import FloatArray, IntArray
 from magshell.equations.discretisation import Assembly, Discretisation
 from magshell.equations.instant import Instant
-from magshell.evaluation.points import PointFields, evaluate, plane_stress_stretch
+from magshell.evaluation.points import PointFields, evaluate, level_stretch
 from magshell.model.course import Loading
 from magshell.shell import rotation
 from magshell.shell.state import State
@@ -43,23 +43,26 @@ class Converged:
     @cached_property
     def fields(self) -> PointFields:
         """Deformation gradient, micro-rotation and wryness at the points."""
-        reference, φ = self.discretisation.reference, None
-        if reference.body.plane_stress:
-            φ = plane_stress_stretch(reference, self.state, self.discretisation.materials)
-        return evaluate(reference, self.state, φ)
+        reference = self.discretisation.reference
+        return evaluate(reference, self.state, level_stretch(reference, self.state, self.loading.flux_density))
+
+    @property
+    def displacement(self) -> FloatArray:
+        """Displacement (nodes, 3), m."""
+        return self.state.displacement(len(self.mesh.points))
 
     def director(self) -> FloatArray:
         """Director d = D + w (nodes, 3)."""
         layout = self.discretisation.reference.body.layout
-        return self.discretisation.normals + self._filled(self.state.w, layout.w)
+        return self.discretisation.normals + self._filled(self.state.w[: len(self.mesh.points)], layout.w)
 
     def phi(self) -> FloatArray:
         """Thickness stretch φ (nodes,), 1/m."""
-        return self._filled(self.state.phi, self.discretisation.reference.body.layout.phi)
+        return self._filled(self.state.phi[: len(self.mesh.points)], self.discretisation.reference.body.layout.phi)
 
     def rotation(self) -> FloatArray:
         """Micro-rotation vector (nodes, 3), rad, of magnitude at most π."""
-        q = self.state.q
+        q = self.state.q[: len(self.mesh.points)]
         if self.discretisation.reference.body.layout.q == 4:
             ends = self._mid_side_ends
             mean = q[ends[:, 0]] + q[ends[:, 1]]

@@ -65,7 +65,7 @@ OUTPUTS: dict[str, Output] = {
             "Displacement of the mid-surface.",
             "point",
             3,
-            lambda converged: converged.state.u,
+            lambda converged: converged.displacement,
         ),
         Output(
             "director",

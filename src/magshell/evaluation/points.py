@@ -10,7 +10,7 @@ import numpy as np
 from magshell.arrays import FloatArray
 from magshell.materials.law import Material
 from magshell.materials.law import evaluate as evaluate_law
-from magshell.shell import rotation
+from magshell.shell import loops, rotation
 from magshell.shell.body import Reference
 from magshell.shell.state import State
 
@@ -33,18 +33,19 @@ class PointFields(NamedTuple):
     kappa: FloatArray
 
 
-def evaluate(reference: Reference, state: State, stretch_at_points: FloatArray | None = None) -> PointFields:
-    """Deformation gradient, micro-rotation and wryness; φ from the nodes, or as given (elements, p)."""
+def evaluate(reference: Reference, state: State, zeta: FloatArray | None = None) -> PointFields:
+    """Deformation gradient, micro-rotation and wryness; with the stretches `zeta` (elements, p, k) of the levels."""
     geometry, shape, elements = reference.geometry, reference.shape, reference.body.elements
     rest, stretch = elements[:, : shape.director.shape[-1]], elements[:, : shape.phi.shape[-1]]
     a = geometry.A + np.einsum("epan,enx->epax", shape.u, state.u[elements])
-    w = np.einsum("epan,enx->epax", shape.director, state.w[rest])
+    w = np.einsum("epan,enx->epax", shape.director, _at_nodes(reference, state))
     d, dd = geometry.D + w[:, :, 0], geometry.dD + w[:, :, 1:]
-    φ = np.einsum("epn,en->ep", shape.phi, state.phi[stretch]) if stretch_at_points is None else stretch_at_points
+    φ = np.einsum("epn,en->ep", shape.phi, state.phi[stretch])
     enhanced = np.einsum("epam,emx->epax", shape.enhancement, state.alpha)
     z = geometry.z
+    along = 1.0 + 2.0 * z * φ[..., None] + (0.0 if zeta is None else zeta)
     g_tangent = a[:, :, None] + z[..., None, None] * dd[:, :, None]
-    g_3 = (1.0 + 2.0 * z * φ[..., None])[..., None] * d[:, :, None]
+    g_3 = along[..., None] * d[:, :, None]
     g = np.concatenate([g_tangent, g_3[:, :, :, None]], axis=3) + enhanced[:, :, None]
     F = np.einsum("epkax,epkay->epkxy", g, geometry.G)
     if not reference.body.layout.q:
@@ -58,6 +59,13 @@ def evaluate(reference: Reference, state: State, stretch_at_points: FloatArray |
     return PointFields(F, rotation.matrix(q), kappa)
 
 
+def _at_nodes(reference: Reference, state: State) -> FloatArray:
+    """w' of each element's nodes that carry it (elements, nodes, 3), with the stretch s of their directors."""
+    count = reference.shape.director.shape[-1]
+    rows, normals = reference.body.elements[:, :count], reference.body.normals[:, :count]
+    return np.asarray(state.w[rows] + state.s[rows][..., None] * (normals + state.w[rows]))
+
+
 def micropolar_stretch(fields: PointFields) -> FloatArray:
     """U = R̃ᵀF, shape (elements, p, k, 3, 3)."""
     return np.einsum("epyx,epkyz->epkxz", fields.R, fields.F)
@@ -65,39 +73,37 @@ def micropolar_stretch(fields: PointFields) -> FloatArray:
 
 def of_materials(reference: Reference, materials: Sequence[Material], U: FloatArray) -> tuple[FloatArray, ...]:
     """Energy (e, p, k), stress (..., 3, 3) and tangent (..., 3, 3, 3, 3) of the laws that hold at the points."""
-    made = reference.body.levels["material"]
+    made, warping = reference.body.levels["material"], reference.body.levels["warping"]
+    D = reference.geometry.D[:, :, None]
+    U = U + warping[..., None, None] * sheared(U, D)
     W, P, C = np.empty(made.shape), np.empty((*made.shape, 3, 3)), np.empty((*made.shape, 3, 3, 3, 3))
     for number, material in enumerate(materials):
         at = made == number
         W[at], P[at], C[at] = evaluate_law(material, U[at])
+    P += warping[..., None, None] * sheared(P, D)
+    for _ in range(2):
+        C = np.moveaxis(C, (-4, -3), (-2, -1))
+        C = C + warping[..., None, None, None, None] * sheared(C, D[..., None, None, :])
     return W, P, C
 
 
-def plane_stress_stretch(reference: Reference, state: State, materials: Sequence[Material]) -> FloatArray:
-    """φ (elements, p), 1/m, that makes the strain energy of each point stationary, by Newton's method.
+def sheared(U: FloatArray, D: FloatArray) -> FloatArray:
+    """Transverse shear Π U (..., 3, 3) of tensors (..., 3, 3) about directors D (..., 3); see `shell/level.py`."""
+    s = 0.5 * np.einsum("...ij,...j->...i", U + np.swapaxes(U, -1, -2), D)
+    s = s - np.sum(s * D, axis=-1, keepdims=True) * D
+    return np.asarray(s[..., :, None] * D[..., None, :] + D[..., :, None] * s[..., None, :])
 
-    It is what the kernels eliminate (`plane_stress.py`) where the remanence lies in the surface.
-    """
-    geometry = reference.geometry
-    outermost = np.abs(geometry.z).max(axis=2)
-    d = director(reference, state)
-    dF = 2.0 * np.einsum("epk,epx,epky->epkxy", geometry.z, d, geometry.G[..., 2, :])
-    φ = np.zeros(geometry.volume.shape[:2])
-    for _ in range(30):
-        fields = evaluate(reference, state, φ)
-        dU = np.einsum("epyx,epkyz->epkxz", fields.R, dF)
-        _, P, C = of_materials(reference, materials, micropolar_stretch(fields))
-        slope = np.einsum("epk,epkxy,epkxy->ep", geometry.volume, P, dU)
-        curvature = np.einsum("epk,epkxy,epkxyzw,epkzw->ep", geometry.volume, dU, C, dU)
-        increment = np.divide(-slope, curvature, out=np.zeros_like(φ), where=geometry.volume[..., 0] > 0.0)
-        φ = φ + np.clip(increment, -0.3 / outermost, 0.3 / outermost)
-        if (np.abs(increment) * outermost).max() < 1e-12:
-            break
-    return φ
+
+def level_stretch(reference: Reference, state: State, flux_density: FloatArray) -> FloatArray | None:
+    """Stretches ζ (elements, p, k) that the kernels eliminate; None: no element has them."""
+    if not reference.body.points["by_level"].any():
+        return None
+    zeta = np.zeros(reference.body.levels.shape)
+    loops.level_stretches(reference.body, state, flux_density, zeta)
+    return zeta
 
 
 def director(reference: Reference, state: State) -> FloatArray:
     """Director d (elements, p, 3) at the points."""
     functions = reference.shape.director
-    rest = reference.body.elements[:, : functions.shape[-1]]
-    return np.asarray(reference.geometry.D + np.einsum("epn,enx->epx", functions[:, :, 0], state.w[rest]))
+    return np.asarray(reference.geometry.D + np.einsum("epn,enx->epx", functions[:, :, 0], _at_nodes(reference, state)))

@@ -31,7 +31,7 @@ class Loading(NamedTuple):
         T.
     loads : ndarray, shape (loads,)
         Multiplier of each load of the model.
-    held : ndarray, shape (nodes, 10)
+    held : ndarray, shape (nodes, 11)
         Values at the supports, in the nodes' frames.
     """
 

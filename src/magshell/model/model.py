@@ -21,12 +21,14 @@ from magshell.model import symmetry
 from magshell.model.course import Amounts, Course, Loading
 from magshell.model.loads import Applied, Load
 from magshell.model.rigid import check_supported
+from magshell.model.rows import Rows, rows_of
 from magshell.model.shell import Shell
 from magshell.model.stages import Stage
 from magshell.model.supports import Constraints, Support, SymmetryPlane, resolve
 from magshell.multipliers import amplitudes
 from magshell.shell.normals import nodal_normals
 from magshell.shell.state import State
+from magshell.shell.unknowns import COLUMNS
 
 # Sine of the angle between mid-surface and mirror plane below which the shell does not cross the plane.
 TOUCHING = 1e-6
@@ -56,8 +58,10 @@ class Model:
 
     Attributes
     ----------
+    rows : Rows
+        Rows of the nodal arrays.
     constraints : Constraints
-        The supports, node by node.
+        The supports, row by row.
     applied : tuple of Applied
         The loads, node by node.
     probe_nodes : mapping of str to int
@@ -76,6 +80,7 @@ class Model:
     probes: Mapping[str, ArrayLike] = dataclasses.field(default_factory=dict)
     loads: Sequence[Load] = ()
     stages: Sequence[Stage] = ()
+    rows: Rows = dataclasses.field(init=False, repr=False)
     constraints: Constraints = dataclasses.field(init=False, repr=False)
     applied: tuple[Applied, ...] = dataclasses.field(init=False, repr=False)
     probe_nodes: Mapping[str, int] = dataclasses.field(init=False, repr=False)
@@ -89,7 +94,9 @@ class Model:
         put(self, "supports", tuple(self.supports))
         put(self, "loads", tuple(self.loads))
         put(self, "stages", tuple(self.stages) or (Stage(),) * self._longest_history())
-        put(self, "constraints", resolve(mesh, self.supports, self.shell.carriers, len(self.stages)))
+        put(self, "rows", rows_of(self.shell))
+        constraints = resolve(mesh, self.supports, self.shell.carriers, len(self.stages))
+        put(self, "constraints", self.rows.constraints(constraints))
         put(self, "applied", tuple(load.applied(self.shell, self.normals) for load in self.loads))
         nodes = {}
         for name, position in self.probes.items():
@@ -100,7 +107,7 @@ class Model:
         put(self, "probe_nodes", MappingProxyType(nodes))
         put(self, "_ends", self._amounts_at_the_ends())
         self._check_targets()
-        check_supported(mesh, self.normals, self.constraints)
+        check_supported(mesh, self.normals, constraints)
         self._check_the_micro_rotation_matters()
         self._check_something_loads()
         for fault in symmetry.broken(self):
@@ -126,7 +133,7 @@ class Model:
     def _check_the_micro_rotation_matters(self) -> None:
         if self.shell.material.coupling_modulus > 0.0:
             return
-        if any(np.any(forces[:, 7:]) for forces in self.forces_at_rest):
+        if any(np.any(forces[:, COLUMNS["omega"]]) for forces in self.forces_at_rest):
             worker = "a moment"
         elif any(one.pairs is not None and one.pairs.column_field == "omega" for one in self.applied):
             worker = "a follower"
@@ -152,8 +159,8 @@ class Model:
 
     @cached_property
     def forces_at_rest(self) -> tuple[FloatArray, ...]:
-        """Forces (nodes, 10) of each load on the undeformed shell, at multiplier 1."""
-        nodes = len(self.shell.mesh.points)
+        """Forces (nodes, 11) of each load on the undeformed shell, at multiplier 1."""
+        nodes = len(self.rows.of)
         state = State.undeformed(nodes, len(self.shell.mesh.elements), self.shell.element.vectors)
         return tuple(applied.forces(state) for applied in self.applied)
 

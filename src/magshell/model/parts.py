@@ -264,7 +264,9 @@ def _draft(shell: Made, region: Region | None, name: str, where: str, members: I
     resolved = []
     for number, layer in enumerate(layers):
         at = f"{where}: layers[{number}]" if layered else where
-        of_material = f"{at}: material" if layered or region is not None and region.material is not None else "material"
+        of_material = (
+            f"{at}: material" if layered or (region is not None and region.material is not None) else "material"
+        )
         thickness = layer.thickness if callable(layer.thickness) else positive(f"{at}: thickness", layer.thickness, "m")
         own = density if layer.density is None else positive(f"{at}: density", layer.density, "kg/m^3")
         resolved.append(

@@ -15,7 +15,7 @@ from magshell.errors import InputError, suggest
 from magshell.keys import HISTORY, Key
 from magshell.mesh import Mesh
 from magshell.multipliers import amplitudes
-from magshell.shell.unknowns import COLUMNS
+from magshell.shell.unknowns import COLUMNS, COMPONENTS
 from magshell.units import ANGLE, INVERSE_LENGTH, LENGTH, NUMBER
 from magshell.wording import quantity, vector
 
@@ -246,13 +246,13 @@ Supports: TypeAlias = Sequence[Support]
 
 
 class Constraints(NamedTuple):
-    """The resolved supports, by node and by column of the nodal arrays (u 0–2, w 3–5, φ 6, ω 7–9).
+    """The resolved supports, by node and by column of the nodal arrays (see `magshell.shell.unknowns`).
 
     Attributes
     ----------
-    fixed : ndarray of bool, shape (nodes, 10)
+    fixed : ndarray of bool, shape (nodes, 11)
         In the node's frame.
-    values : ndarray, shape (stages, nodes, 10)
+    values : ndarray, shape (stages, nodes, 11)
         At the end of each stage, in the node's frame.
     frame_of : ndarray, shape (nodes, 3)
         Frame of u, w and ω, -1 for the global axes.
@@ -289,7 +289,7 @@ def resolve(mesh: Mesh, supports: Supports, carriers: Mapping[str, AnyBool], sta
         length.
     """
     nodes = len(mesh.points)
-    fixed, values = np.zeros((nodes, 10), dtype=bool), np.zeros((stages, nodes, 10))
+    fixed, values = np.zeros((nodes, COMPONENTS), dtype=bool), np.zeros((stages, nodes, COMPONENTS))
     frame_of = np.full((nodes, 3), -1)
     frames: list[FloatArray] = []
     directions: dict[tuple[int, str], list[tuple[FloatArray, FloatArray, str]]] = {}

@@ -108,7 +108,7 @@ def film(path: Path, steps: Sequence[Step], color: str, dpi: int = DPI) -> Itera
         def picture(step: Step) -> Image:
             rgb = colours.to_rgba(values[step.number], bytes=True)[:, :3]
             arrow = arrows[step.number]
-            scene = expose(deformed(mesh, cells, step.state.u, rgb, arrow, camera))
+            scene = expose(deformed(mesh, cells, step.state.displacement(len(mesh.points)), rgb, arrow, camera))
             whole = images.new("RGBA", front.size, "white")
             whole.alpha_composite(images.fromarray(scene), (0, front.height - shape[1]))
             whole.alpha_composite(front)
@@ -255,8 +255,8 @@ def _look(
 ) -> tuple[Camera, dict[int, FloatArray | None]]:
     """The camera of all steps, and the field arrow of each, as long as the field is strong."""
     mesh = path.discretisation.mesh
-    extent = np.concatenate([mesh.points, *(mesh.points + step.state.u for step in steps)])
-    axes = best_axes(np.vstack([mesh.points, mesh.points + steps[-1].state.u]))
+    extent = np.concatenate([mesh.points, *(mesh.points + step.state.displacement(len(mesh.points)) for step in steps)])
+    axes = best_axes(np.vstack([mesh.points, mesh.points + steps[-1].state.displacement(len(mesh.points))]))
     strongest = max(float(np.linalg.norm(step.flux_density)) for step in steps)
     arrows: dict[int, FloatArray | None] = {}
     for step in steps:

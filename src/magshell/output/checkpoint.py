@@ -27,6 +27,7 @@ from magshell.evaluation.balance import Balance
 from magshell.files import naming, write_atomically
 from magshell.output.archive import Unfit, digest, read_arrays
 from magshell.shell.state import State
+from magshell.shell.unknowns import COMPONENTS
 from magshell.solver.critical import CriticalPoint
 from magshell.solver.events import Observer
 from magshell.solver.path import Path
@@ -236,7 +237,7 @@ def _waypoint(arrays: Mapping[str, np.ndarray]) -> Waypoint:
         float(arrays["residual"]), _balance(arrays), float(arrays["arc_length"]), int(arrays["stage"]),
         arrays["flux_density"], arrays["loads"], _known(arrays["negative_pivots"]),
     )  # fmt: skip
-    slope = Slope(Increment(arrays["slope_increment"], arrays["slope_alpha"]), float(arrays["slope_load"]))
+    slope = Slope(Increment(_columns(arrays["slope_increment"]), arrays["slope_alpha"]), float(arrays["slope_load"]))
     critical = tuple(_critical(arrays, f"critical{number + 1}_") for number in range(int(arrays["critical_points"])))
     return Waypoint(
         step, critical, slope, int(arrays["goal"]), int(arrays["taken"]), bool(arrays["by_arc"]),
@@ -252,7 +253,13 @@ def _origin(arrays: Mapping[str, np.ndarray]) -> Origin:
 
 
 def _state(arrays: Mapping[str, np.ndarray], prefix: str) -> State:
-    return State(*(arrays[prefix + name] for name in State._fields))
+    own = {name: arrays[prefix + name] for name in State._fields if name != "s"}
+    return State(**own, s=arrays.get(prefix + "s", np.zeros(len(own["u"]))))  # files of magshell 0.1.0 have no s
+
+
+def _columns(nodal: np.ndarray) -> np.ndarray:
+    """Nodal columns; files of magshell 0.1.0 lack that of s."""
+    return np.pad(nodal, ((0, 0), (0, 1))) if nodal.ndim == 2 and nodal.shape[1] == COMPONENTS - 1 else nodal
 
 
 def _balance(arrays: Mapping[str, np.ndarray]) -> Balance | None:
@@ -281,7 +288,7 @@ def _critical(arrays: Mapping[str, np.ndarray], prefix: str) -> CriticalPoint:
     before, after = own["negative_pivots"]
     return CriticalPoint(
         int(own["number"]), str(own["kind"]), int(own["stage"]), float(own["load_factor"]), own["flux_density"],
-        float(own["arc_length"]), _state(arrays, prefix), own["mode"], (_known(before), _known(after)),
+        float(own["arc_length"]), _state(arrays, prefix), _columns(own["mode"]), (_known(before), _known(after)),
     )  # fmt: skip
 
 

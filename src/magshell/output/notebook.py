@@ -286,7 +286,7 @@ def _path_figure(path: Path) -> Figure:
 
     mesh, last = path.model.shell.mesh, path.steps[-1]
     with_curve = len(path.steps) > 1
-    height = max(_height(mesh, last.state.u, 4.2), 3.0)
+    height = max(_height(mesh, last.state.displacement(len(mesh.points)), 4.2), 3.0)
     figure = Figure(figsize=(9.4 if with_curve else 5.6, height), dpi=DPI, facecolor="white")
     figure.set_layout_engine("constrained", wspace=0.06)
     if with_curve:
@@ -294,9 +294,9 @@ def _path_figure(path: Path) -> Figure:
         _chart(chart, path)
     else:
         body = figure.subplots()
-    size = 1e3 * np.linalg.norm(last.state.u, axis=1)
+    size = 1e3 * np.linalg.norm(last.state.displacement(len(mesh.points)), axis=1)
     tessellation = tessellate(mesh)
-    scale, view = _paint_size(body, mesh, last.state.u, tessellation.at_points(size))
+    scale, view = _paint_size(body, mesh, last.state.displacement(len(mesh.points)), tessellation.at_points(size))
     triad(body, view)
     bar = figure.colorbar(
         scale,
@@ -343,7 +343,7 @@ def _modes_figure(buckling: Buckling) -> Figure:
 
     mesh = buckling.path.model.shell.mesh
     modes = buckling.modes[:MOST_MODES]
-    moved = [mode.state.u + MODE_SIZE * mesh.size * mode.mode[:, :3] for mode in modes]
+    moved = [(mode.state.u + MODE_SIZE * mesh.size * mode.mode[:, :3])[: len(mesh.points)] for mode in modes]
     height = max(_height(mesh, displacement, 9.4 / max(len(modes), 2)) for displacement in moved)
     figure = Figure(figsize=(max(2.35 * len(modes), 4.7), height + 0.2), dpi=DPI, facecolor="white")
     figure.set_layout_engine("constrained")

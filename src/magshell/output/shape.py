@@ -72,7 +72,7 @@ def draw_shape(
     rgb = colours.to_rgba(values, bytes=True)[:, :3]
     field = shown.flux_density
     pixels = (round(DPI * INCHES[0] * SCENE[2]), round(DPI * INCHES[1] * SCENE[3]))
-    scene, camera, arrow = draw(mesh, tessellation, shown.state.u, rgb, field, pixels)
+    scene, camera, arrow = draw(mesh, tessellation, shown.state.displacement(len(mesh.points)), rgb, field, pixels)
 
     figure = Figure(figsize=INCHES, dpi=DPI, facecolor="white")
     axes = figure.add_axes(SCENE)

@@ -8,6 +8,7 @@ import numpy as np
 
 from magshell.model.model import Model
 from magshell.shell.state import State
+from magshell.shell.unknowns import COMPONENTS
 from magshell.solver.critical import BIFURCATION, LIMIT_POINT, CriticalPoint
 from magshell.solver.goals import goals_of
 from magshell.solver.path import Path
@@ -19,13 +20,15 @@ ROUND_OFF = 1e-6
 FAR = 1e6
 # A step's arrays and those of so many critical points are the most that a file holds.
 MOST_CRITICAL_POINTS = 100
-_FLOATS_OF_A_NODE, _FLOATS_OF_A_MODE, _REST = 34, 6, 2**20
+_FLOATS_OF_A_NODE, _FLOATS_OF_A_MODE, _REST = 37, 6, 2**20
 
 
 def most_bytes(model: Model) -> int:
     """Size of the largest file that a step of a model may have."""
     mesh = model.shell.mesh
-    floats = _FLOATS_OF_A_NODE * len(mesh.points) + _FLOATS_OF_A_MODE * len(mesh.elements) * model.shell.element.vectors
+    floats = (
+        _FLOATS_OF_A_NODE * len(model.rows.of) + _FLOATS_OF_A_MODE * len(mesh.elements) * model.shell.element.vectors
+    )
     return _REST + 8 * (MOST_CRITICAL_POINTS + 1) * floats
 
 
@@ -59,7 +62,7 @@ def _faults(waypoint: Waypoint, before: Waypoint | None, model: Model) -> Iterat
         yield "a count, radius, residual or time is negative or too large"
     yield from _faults_of_state(step.state, model, "")
     slope = waypoint.slope
-    yield from _of_shape("slope_increment", slope.increment.nodal, (len(model.shell.mesh.points), 10))
+    yield from _of_shape("slope_increment", slope.increment.nodal, (len(model.rows.of), COMPONENTS))
     yield from _of_shape("slope_alpha", slope.increment.alpha, step.state.alpha.shape)
     if step.balance is not None:
         for name, values in step.balance._asdict().items():
@@ -70,17 +73,17 @@ def _faults(waypoint: Waypoint, before: Waypoint | None, model: Model) -> Iterat
 
 def _faults_of_state(state: State, model: Model, prefix: str) -> Iterator[str]:
     mesh = model.shell.mesh
-    nodes = len(mesh.points)
+    nodes = len(model.rows.of)
     alpha = (len(mesh.elements), model.shell.element.vectors, 3)
-    shapes = {"u": (nodes, 3), "w": (nodes, 3), "phi": (nodes,), "q": (nodes, 4), "alpha": alpha}
+    shapes = {"u": (nodes, 3), "w": (nodes, 3), "phi": (nodes,), "q": (nodes, 4), "s": (nodes,), "alpha": alpha}
     for name, shape in shapes.items():
         yield from _of_shape(prefix + name, getattr(state, name), shape)
     far = np.flatnonzero(np.abs(state.u).max(axis=1) > FAR * mesh.size)
     if far.size:
-        yield f"{prefix}u of node {far[0]} is {np.abs(state.u[far[0]]).max():g} m"
+        yield f"{prefix}u of node {model.rows.of[far[0]]} is {np.abs(state.u[far[0]]).max():g} m"
     stretched = np.abs(np.linalg.norm(state.q, axis=1) - 1.0)
     if stretched.max() > ROUND_OFF:
-        yield f"{prefix}q of node {int(np.argmax(stretched))} is not a unit quaternion"
+        yield f"{prefix}q of node {model.rows.of[np.argmax(stretched)]} is not a unit quaternion"
 
 
 def _of_shape(name: str, values: np.ndarray, shape: tuple[int, ...]) -> Iterator[str]:
@@ -94,7 +97,7 @@ def _faults_of_critical(point: CriticalPoint, prefix: str, model: Model) -> Iter
     if not 0 <= point.stage < len(model.stages):
         yield f"{prefix}stage is {point.stage + 1}, of {len(model.stages)}"
     yield from _of_shape(f"{prefix}flux_density", point.flux_density, (3,))
-    yield from _of_shape(f"{prefix}mode", point.mode, (len(model.shell.mesh.points), 10))
+    yield from _of_shape(f"{prefix}mode", point.mode, (len(model.rows.of), COMPONENTS))
     yield from _faults_of_state(point.state, model, prefix)
 
 

@@ -214,7 +214,7 @@ def least_shifts(geometry: SectionGeometry, faces: FloatArray) -> FloatArray:
 
 
 def unit_forces(geometry: SectionGeometry, shape: Interpolation, modulus: FloatArray) -> FloatArray:
-    """Forces of a stress as large as the modulus whose contributions do not cancel: norms for u, w, φ, ω and α.
+    """Forces of a stress as large as the modulus whose contributions do not cancel: norms for u, w, φ, ω, s and α.
 
     A stress is known to round-off times the modulus, so this tells how small a residual can be told from zero.
     `modulus` is that of each level (elements, p, k), Pa.
@@ -227,4 +227,4 @@ def unit_forces(geometry: SectionGeometry, shape: Interpolation, modulus: FloatA
     φ = 2.0 * np.einsum("epn,epk,epk->en", np.abs(shape.phi), leg[..., 2], z * volume)
     ω = np.einsum("epn,epk->en", np.abs(shape.rotation[:, :, 0]), volume)
     α = np.einsum("epam,epka,epk->em", np.abs(shape.enhancement), leg, volume)
-    return np.array([np.linalg.norm(forces) for forces in (u, w, φ, ω, α)])
+    return np.array([np.linalg.norm(forces) for forces in (u, w, φ, ω, w, α)])

@@ -1,4 +1,4 @@
-"""Loops over the elements: matrices and forces, enhanced parameters, predicted stresses.
+"""Loops over the elements: matrices and forces, enhanced parameters, predicted stresses, stretches of the levels.
 
 Nodal arrays have eleven columns: u (3), w (3), φ, spin ϑ (3), s; a column that a node does not carry stays zero.
 """
@@ -12,7 +12,7 @@ import numpy as np
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.compiled import Kernel, inline
 from magshell.shell.bubble import Hold, hold_vector
-from magshell.shell.director_stretch import chain_forces, chain_matrix, stretch_directors, stretch_increments
+from magshell.shell.director_stretch import chain_matrix, chain_row, stretch_directors, stretch_increments
 from magshell.shell.element import (
     Layout,
     add_radial_force,
@@ -26,8 +26,9 @@ from magshell.shell.element import (
     transpose,
 )
 from magshell.shell.level import Laws
-from magshell.shell.point import INTERNAL, MAGNETIC, PADDED, SIZE, workspace
-from magshell.shell.rotation import LAST, NEXT
+from magshell.shell.level_stretch import ZETA, solve_level_stretch
+from magshell.shell.point import INTERNAL, MAGNETIC, PADDED, SIZE, Q, workspace
+from magshell.shell.rotation import LAST, NEXT, rotation_matrix
 from magshell.shell.section import Request, predicted_stress, section
 from magshell.shell.state import State
 
@@ -86,8 +87,8 @@ class Filled(NamedTuple):
         Δα = -offset - gain Δv.
     energy : ndarray, shape (elements, 2)
         Elastic and magnetic, J.
-    scale : ndarray, shape (4, 2)
-        Of u, w, φ, ω: sums of squares of the elements' internal forces and of their magnetic forces.
+    scale : ndarray, shape (5, 2)
+        Of u, w, φ, ω, s: sums of squares of the elements' internal forces and of their magnetic forces.
     enhancement_residual : ndarray, shape (1,)
         Sum of squares of the residuals of α.
     """
@@ -225,7 +226,7 @@ def predict_stresses(
     d_alpha: FloatArray,
     stresses: Stresses,
 ) -> None:
-    """Fill the stresses predicted linearly from `state` for a nodal increment (nodes, 11) and Δα, in a field (3,), T."""
+    """Fill the stresses predicted linearly from `state` for a nodal increment (nodes, 11) and Δα, in a field, T."""
     layout = body.layout
     modes, rest, at = layout.modes, layout.q, layout.at_q
     full = layout.nodal + rest + 3 * modes
@@ -257,6 +258,31 @@ def predict_stresses(
             point_values(point, enhancement, layout, v, w.x)
             point_values(point, enhancement, layout, dv, w.dx)
             predicted_stress(w, point, levels, body.laws, flux_density, S, kappa, across)
+
+
+@Kernel
+def level_stretches(body: Body, state: State, flux_density: FloatArray, zeta: FloatArray) -> None:
+    """Fill the stretch ζ (e, p, k) that each level has of its own (`level_stretch.py`); zero where φ is a field."""
+    layout = body.layout
+    v, records = np.zeros(layout.nodal + layout.q + 3 * layout.modes), workspace()
+    w, across = records[0], np.zeros((4, body.levels.shape[2]))
+    for e in range(len(body.elements)):
+        gather(body.elements[e], state, state.alpha[e], layout, v)
+        if body.stretched[e]:
+            stretch_directors(body.elements[e], body.normals[e], state, layout, v)
+        for p in range(body.points.shape[1]):
+            point = body.points[e, p]
+            zeta[e, p, :] = 0.0
+            if point.by_level == 0:
+                continue
+            point_values(point, body.enhancement[e, p], layout, v, w.x)
+            rotation_matrix(w.x[Q : Q + 4], w.R)
+            levels = body.levels[e, p][: point.levels]
+            if not solve_level_stretch(w, point, levels, body.laws, flux_density, across):
+                zeta[e, p, :] = np.nan
+                continue
+            for k in range(len(levels)):
+                zeta[e, p, k] = across[ZETA, k]
 
 
 def are_compiled() -> bool:

@@ -21,8 +21,8 @@ NODES = 8
 # Columns of the gradient g: internal, magnetic, and what the geometric part of the tangent is made with.
 INTERNAL, MAGNETIC, MIXED = 0, 1, 2
 
-#: A point of the mid-surface: base A_α (m), director D and D,α, metric c^αβ of the couple stress (N m), and functions
-#: of the element's nodes (see `Interpolation`; those of fewer nodes come first). How many levels it has, and whether each
+#: A point of the mid-surface: base A_α (m), director D and D,α, metric c^αβ of the couple stress (N m), functions of
+#: the element's nodes (see `Interpolation`; those of fewer nodes come first), how many levels it has, and whether each
 #: has a stretch of its own (`level_stretch.py`).
 POINT = np.dtype(
     [

@@ -36,6 +36,10 @@ class State(NamedTuple):
     s: FloatArray
     alpha: FloatArray
 
+    def displacement(self, nodes: int) -> FloatArray:
+        """Displacement (nodes, 3) of the mesh's nodes, which come first, m."""
+        return self.u[:nodes]
+
     @classmethod
     def undeformed(cls, nodes: int, elements: int, modes: int) -> State:
         """All zero, no rotation."""

@@ -55,7 +55,7 @@ class BucklingMode(NamedTuple):
         At that load factor, T.
     state : State
         About which it is.
-    mode : ndarray, shape (nodes, 10)
+    mode : ndarray, shape (nodes, 11)
         Global axes, the largest displacement 1 m.
     strain, rotation : float
         The largest (rad) that the linear path has at that load factor at the points of the integration rule.

@@ -51,7 +51,7 @@ class CriticalPoint(NamedTuple):
         T.
     arc_length : float
     state : State
-    mode : ndarray, shape (nodes, 10)
+    mode : ndarray, shape (nodes, 11)
         The direction in which the tangent does nothing, global axes; its largest displacement is 1 m.
     negative_pivots : tuple of int or None
         Before and after it.
@@ -145,7 +145,7 @@ class _Search:
 
     def own(self, state: State, load_factor: float) -> Trial:
         """A state with its own stresses: those that a step predicted would move the zero of an eigenvalue."""
-        return Trial(state, load_factor, self.system.discretisation.predicted(state))
+        return Trial(state, load_factor, self.system.predicted(state, load_factor))
 
     def turn(self) -> float | None:
         """Distance of the limit point."""
@@ -253,5 +253,5 @@ def zero_between(values: dict[float, float], low: float, high: float) -> float:
 
 
 def normalised(mode: FloatArray) -> FloatArray:
-    """A mode (nodes, 10) of largest displacement 1 m."""
+    """A mode (nodes, 11) of largest displacement 1 m."""
     return mode / (float(np.linalg.norm(mode[:, :3], axis=1).max()) or 1.0)

@@ -29,7 +29,7 @@ import numpy as np
 from magshell.arrays import FloatArray
 from magshell.equations.discretisation import Discretisation
 from magshell.evaluation.converged import Converged
-from magshell.evaluation.points import evaluate
+from magshell.evaluation.points import evaluate, level_stretch
 from magshell.magnetics import law
 from magshell.magnetics.law import OMEGA
 from magshell.model.course import Loading
@@ -206,7 +206,8 @@ def _turn(discretisation: Discretisation, state: State) -> Turn:
 def _angles_of_edges(discretisation: Discretisation, state: State) -> FloatArray:
     """Angle (elements, 4) that the shell turns along each edge, degrees."""
     elements = discretisation.mesh.elements
-    position, director = discretisation.mesh.points + state.u, discretisation.normals + state.w
+    nodes = len(discretisation.mesh.points)
+    position, director = discretisation.mesh.points + state.u[:nodes], discretisation.normals + state.w[:nodes]
     first, second, middle = elements[:, :4], np.roll(elements[:, :4], -1, axis=1), elements[:, 4:]
     chord, rise = (
         position[second] - position[first],
@@ -227,7 +228,7 @@ def _couple(discretisation: Discretisation, state: State, loading: Loading) -> C
     modulus = model.shell.material.coupling_modulus
     if not reference.body.layout.q or not modulus or not np.any(loading.flux_density):
         return None
-    fields = evaluate(reference, state)
+    fields = evaluate(reference, state, level_stretch(reference, state, loading.flux_density))
     F = fields.F.mean(axis=2)
     left, stretches, right = np.linalg.svd(F)
     Q = left @ right

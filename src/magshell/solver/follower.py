@@ -96,7 +96,7 @@ class Follower:
     def _first(self, start: Start, goal: Goal) -> tuple[Point, Solution]:
         """The first point of a stage, and its state as a solution."""
         state = start.state
-        trial = Trial(state, 0.0, self.discretisation.predicted(state))
+        trial = Trial(state, 0.0, self.system.predicted(state, 0.0))
         solution = Solution(trial, self.system.assemble(trial), [0.0], None, None)
         along: Direction = np.zeros_like(state.u), 1.0
         point = point_at(self.system, self.metric, solution, None, start.arc_length, along)
@@ -110,7 +110,7 @@ class Follower:
 
     def _point(self, waypoint: Waypoint) -> Point:
         step = waypoint.step
-        prediction = self.discretisation.predicted(step.state)
+        prediction = self.system.predicted(step.state, step.load_factor)
         return Point(step.arc_length, step.load_factor, step.state, waypoint.slope, prediction, step.negative_pivots)
 
     def _head_for(self, goal: int) -> None:

@@ -27,11 +27,10 @@ import scipy.sparse as sp
 
 from magshell.equations.instant import Instant, Prediction, combined, moved
 from magshell.equations.term import InvertedElement
-from magshell.evaluation.points import evaluate, micropolar_stretch, of_materials, plane_stress_stretch
+from magshell.evaluation.points import evaluate
 from magshell.linalg import Factorisation
 from magshell.linalg.factorisation import scaled
 from magshell.model.course import Loading
-from magshell.shell.loops import Stresses
 from magshell.shell.state import State
 from magshell.solver.newton import StepFailure, System, factorise
 
@@ -40,8 +39,6 @@ UNIT, CHANGE = 0.02, 0.1
 # Strain or rotation at s = 1 that is round-off, and up to which the linear path is followed.
 MOTIONLESS, REACH = 1e-9, 0.1
 PASSES = 20
-# Step for the stresses of shells in plane stress.
-STEP = 0.05
 
 
 class LinearPath:
@@ -62,7 +59,7 @@ class LinearPath:
     def __init__(self, system: System, state: State) -> None:
         self.system, self.state = system, state
         discretisation = system.discretisation
-        self._start = Instant(state, system.course.at(0.0), discretisation.predicted(state))
+        self._start = Instant(state, system.course.at(0.0), system.predicted(state, 0.0))
         self._assembly = discretisation.assemble(self._start)
         factors = factorise(system, self._assembly)
         self.unit = 1.0
@@ -121,22 +118,9 @@ class LinearPath:
 
     def _along(self) -> tuple[Prediction, Prediction]:
         """Stresses of the state, and what they grow by up to s = 1."""
-        discretisation, state, increment = self.system.discretisation, self.state, self._increment
-        if discretisation.reference.body.plane_stress:
-            steps = (-STEP, 0.0, STEP)
-            back, now, ahead = (self._plane_stresses(moved(state, step * increment)) for step in steps)
-            return now, combined([0.5 / STEP, -0.5 / STEP], [ahead, back])
-        now = discretisation.predicted(state)
-        return now, combined([1.0, -1.0], [discretisation.predicted(state, increment), now])
-
-    def _plane_stresses(self, state: State) -> Prediction:
-        """Stresses S = U⁻¹ P with the stretch φ that plane stress makes."""
-        discretisation = self.system.discretisation
-        reference, materials = discretisation.reference, discretisation.materials
-        fields = evaluate(reference, state, plane_stress_stretch(reference, state, materials))
-        U = micropolar_stretch(fields)
-        _, P, _ = of_materials(reference, materials, U)
-        return Stresses(np.asarray(np.linalg.solve(U, P)), np.ascontiguousarray(fields.kappa))
+        now = self.system.predicted(self.state, 0.0)
+        ahead = self.system.predicted(self.state, 0.0, self._increment)
+        return now, combined([1.0, -1.0], [ahead, now])
 
     def _fit(self) -> None:
         """Make the unit one over which the loads change the tangent little, but not only by round-off."""

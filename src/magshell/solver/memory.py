@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse as sp
 
-from magshell.equations.numbering import columns_of, graph_of
+from magshell.equations.numbering import graph_of
 from magshell.linalg import nested_dissection
 from magshell.linalg.multifrontal.fronts import fronts_of
 from magshell.model.model import Model
@@ -47,7 +47,8 @@ def need_of(model: Model, linear_solver: str = "multifrontal") -> Need:
     elements = len(mesh.elements)
     graph = graph_of([mesh.elements], nodes)
     order = nested_dissection(graph)
-    unknowns = (columns_of(model.shell.carriers) & ~model.constraints.fixed).sum(axis=1)
+    free = (model.rows.carried & ~model.constraints.fixed).sum(axis=1)
+    unknowns = np.bincount(model.rows.of, free, minlength=nodes).astype(np.int64)
     order = order[unknowns[order] > 0]
     ordered = sp.csc_array(graph[order][:, order])
     ordered.sort_indices()

@@ -89,6 +89,10 @@ class System(NamedTuple):
         """Residual and tangent."""
         return self.discretisation.assemble(self.instant(trial))
 
+    def predicted(self, state: State, load_factor: float, increment: Increment | None = None) -> Prediction:
+        """What the mixed tangent takes of a state after an increment; by default of the state itself."""
+        return self.discretisation.predicted(Instant(state, self.course.at(load_factor)), increment)
+
     def per_load(self, trial: Trial, assembly: Assembly, factors: Factorisation) -> Increment:
         """Increment per load factor, by the factors of a tangent."""
         discretisation, rate = self.discretisation, self.course.rate(trial.load_factor)
@@ -150,7 +154,7 @@ def newton(
             trial = Trial(
                 moved(start.state, size * increment),
                 start.load_factor + size * d_load,
-                discretisation.predicted(start.state, size * increment),
+                system.predicted(start.state, start.load_factor, size * increment),
             )
             try:
                 assembly = system.assemble(trial)

@@ -21,7 +21,7 @@ class Start(NamedTuple):
         Of the path there.
     amounts : Amounts or None
         What acts there; None: nothing yet.
-    mode : ndarray or None, shape (nodes, 10)
+    mode : ndarray or None, shape (nodes, 11)
         Direction of the first step, on a branch.
     """
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.equations.discretisation import Discretisation
-from magshell.equations.instant import Increment, Prediction, combined, difference, moved
+from magshell.equations.instant import Increment, Instant, Prediction, combined, difference, moved
 from magshell.linalg import Factorisation
 from magshell.model.course import Course
 from magshell.shell.state import State
@@ -106,15 +106,17 @@ def trial_at(
         load_factor = value_at(track, [point.load_factor for point in track[-3:]], last.slope.load, distance)
     held = course.amounts(load_factor).held - course.amounts(last.load_factor).held
     increment = discretisation.with_imposed(increment, held)
-    return Trial(moved(last.state, increment), load_factor, _predicted_ahead(discretisation, track, on_slope, shares))
+    prediction = _predicted_ahead(discretisation, course, track, on_slope, shares)
+    return Trial(moved(last.state, increment), load_factor, prediction)
 
 
 def _predicted_ahead(
-    discretisation: Discretisation, track: Sequence[Point], on_slope: float, shares: Sequence[float]
+    discretisation: Discretisation, course: Course, track: Sequence[Point], on_slope: float, shares: Sequence[float]
 ) -> Prediction:
     """By the same polynomial. (Those of the trial state itself have large membrane parts that the path has not.)"""
     last = track[-1]
-    sloping = discretisation.predicted(last.state, last.slope.increment)
+    at_last = Instant(last.state, course.at(last.load_factor))
+    sloping = discretisation.predicted(at_last, last.slope.increment)
     points = [point.prediction for point in track[-3:-1]]
     return combined([1.0 - on_slope - sum(shares), on_slope, *shares], [last.prediction, sloping, *points])
 
@@ -197,14 +199,14 @@ def point_at(
         The tangent is singular, or nothing changes with the load factor.
     """
     factors = factorise(system, solution.assembly) if factors is None else factors
-    trial, discretisation = solution.trial, system.discretisation
+    trial = solution.trial
     per_load = system.per_load(trial, solution.assembly, factors)
     length = metric.norm(per_load.u, 1.0)
     if not np.isfinite(length):
         raise StepFailure("the tangent is singular at the converged state")
     side = -1.0 if metric.product((per_load.u, 1.0), along) < 0.0 else 1.0
     slope = Slope(side / length * per_load, side / length)
-    prediction = discretisation.predicted(trial.state)
+    prediction = system.predicted(trial.state, trial.load_factor)
     return Point(arc_length, trial.load_factor, trial.state, slope, prediction, factors.negative_pivots())
 
 

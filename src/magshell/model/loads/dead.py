@@ -13,7 +13,7 @@ from magshell.shell.unknowns import COLUMNS, COMPONENTS
 
 
 def nodal(field: str, vectors: FloatArray) -> FloatArray:
-    """Nodal columns (nodes, 10) with these vectors (nodes, 3) on one field."""
+    """Nodal columns (nodes, 11) with these vectors (nodes, 3) on one field."""
     columns = np.zeros((len(vectors), COMPONENTS))
     columns[:, COLUMNS[field]] = vectors
     return columns

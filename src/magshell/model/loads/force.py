@@ -96,7 +96,7 @@ class _TurningForces:
         return Pairs("u", "omega", self._nodes, self._nodes)
 
     def _turned(self, state: State) -> FloatArray:
-        return np.einsum("nij,nj->ni", rotation.matrix(state.q), self.unrotated)
+        return np.einsum("nij,nj->ni", rotation.matrix(state.q[: len(self.unrotated)]), self.unrotated)
 
     def forces(self, state: State) -> FloatArray:
         """R̃ F on u."""

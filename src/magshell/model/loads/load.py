@@ -54,7 +54,7 @@ class Applied(Protocol):
         """Where its tangent is; None: it has none."""
 
     def forces(self, state: State) -> FloatArray:
-        """Its forces (nodes, 10) in global axes: N on u, N m on w (which is a number), N m on the spin."""
+        """Its forces (nodes, 11) in global axes: N on u, N m on w (which is a number), N m on the spin."""
 
     def stiffness(self, state: State) -> FloatArray:
         """Minus the derivative of the forces with respect to the increments at the pairs: (n, 3, 3), global axes.
@@ -149,7 +149,7 @@ class Load(ABC):
         """
 
     def words(self, shell: Shell, forces: FloatArray) -> str:
-        """The load in `magshell check`, given its forces (nodes, 10) on the undeformed shell."""
+        """The load in `magshell check`, given its forces (nodes, 11) on the undeformed shell."""
         text = f"{self.given}, {self.extent(shell)}"
         for field, dimension in (("u", FORCE), ("omega", MOMENT)):
             if np.any(forces[:, COLUMNS[field]]):
@@ -240,7 +240,7 @@ class Load(ABC):
 
 
 def resultant(forces: FloatArray, field: str = "u") -> tuple[float, ...]:
-    """Sum (3,) of nodal forces (nodes, 10) on a field, without the round-off of components that are meant to be 0."""
+    """Sum (3,) of nodal forces (nodes, 11) on a field, without the round-off of components that are meant to be 0."""
     total = forces[:, COLUMNS[field]].sum(axis=0)
     return tuple(np.where(np.abs(total) > 1e-9 * np.abs(total).max(), total, 0.0).tolist())
 

@@ -124,7 +124,7 @@ class _TurningCouples(_Moments):
         return Pairs("omega", "omega", self._nodes, self._nodes)
 
     def _turned(self, state: State) -> FloatArray:
-        return np.einsum("nij,nj->ni", rotation.matrix(state.q), self.moments)
+        return np.einsum("nij,nj->ni", rotation.matrix(state.q[: len(self.moments)]), self.moments)
 
     def forces(self, state: State) -> FloatArray:
         """c = R̃ C on the spin."""
@@ -145,12 +145,12 @@ class _DirectorMoments(_Moments):
 
     def forces(self, state: State) -> FloatArray:
         """M × d / |d|² on w."""
-        d = self.normals + state.w
+        d = self.normals + state.w[: len(self.normals)]
         return nodal("w", rotation.cross(self.moments, d) / np.sum(d * d, axis=1, keepdims=True))
 
     def stiffness(self, state: State) -> FloatArray:
         """-[M]× (I - 2 n ⊗ n) / |d|²."""
-        d = (self.normals + state.w)[self._nodes]
+        d = self.normals[self._nodes] + state.w[self._nodes]
         square = np.sum(d * d, axis=1)[:, None, None]
         reflection = np.eye(3) - 2.0 * d[:, :, None] * d[:, None, :] / square
         return -cross_matrix(self.moments[self._nodes]) @ reflection / square

@@ -123,7 +123,7 @@ class _Pressing:
 
     def _base(self, state: State) -> tuple[FloatArray, FloatArray]:
         """a_1 and a_2 (e, p, 3)."""
-        x = (self.points + state.u)[self.elements]
+        x = (self.points + state.displacement(len(self.points)))[self.elements]
         a = self.derivatives @ x[:, None]
         return a[:, :, 0], a[:, :, 1]
 

@@ -173,7 +173,8 @@ def _hull(path: Path, steps: Sequence[Step]) -> FloatArray:
     height, turn = 1.0 - 2.0 * number / DIRECTIONS, np.pi * (1.0 + 5.0**0.5) * number
     ring = np.sqrt(1.0 - height**2)
     directions = np.stack([ring * np.cos(turn), ring * np.sin(turn), height])
-    positions = (path.discretisation.mesh.points + step.state.u for step in steps)
+    mesh = path.discretisation.mesh
+    positions = (mesh.points + step.state.displacement(len(mesh.points)) for step in steps)
     extreme = np.concatenate([x[np.unique((x @ directions).argmax(axis=0))] for x in positions])
     return np.asarray(extreme[np.unique((extreme @ directions).argmax(axis=0))])
 
@@ -181,7 +182,7 @@ def _hull(path: Path, steps: Sequence[Step]) -> FloatArray:
 def _view(path: Path) -> tuple[float, float]:
     """Azimuth and elevation of the eye that pictures have, degrees."""
     mesh = path.discretisation.mesh
-    towards = best_axes(np.vstack([mesh.points, mesh.points + path.steps[-1].state.u]))[2]
+    towards = best_axes(np.vstack([mesh.points, mesh.points + path.steps[-1].state.displacement(len(mesh.points))]))[2]
     return float(np.degrees(np.arctan2(towards[1], towards[0]))), float(np.degrees(np.arcsin(towards[2])))
 
 
