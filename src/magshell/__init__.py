@@ -21,8 +21,8 @@ if TYPE_CHECKING:
         remanence,
     )
     from magshell.materials import MicropolarMooneyRivlin, MicropolarNeoHookean, MicropolarStVenantKirchhoff
-    from magshell.model.loads import Force, Gravity, Moment, Pressure, Traction
     from magshell.model import thickness
+    from magshell.model.loads import Force, Gravity, Moment, Pressure, Traction
     from magshell.model.model import Model
     from magshell.model.region import Layer, Region
     from magshell.model.shell import Shell

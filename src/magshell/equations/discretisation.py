@@ -201,7 +201,7 @@ class Discretisation:
     def _unit(self, column: int) -> float:
         if column < COLUMNS["u"].stop:
             return self.mesh.size
-        return 1.0 / self.model.shell.thickness if column == COLUMNS["phi"].start else 1.0
+        return 1.0 / self.model.shell.greatest_thickness if column == COLUMNS["phi"].start else 1.0
 
     def _relative(self, residual: FloatArray, squares: FloatArray, inner: float) -> dict[str, float]:
         """Norms by kind above their round-off, over the elements' forces and the loads of that kind.
