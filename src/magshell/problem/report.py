@@ -15,7 +15,7 @@ from magshell.mesh.geometry import centres, unit
 from magshell.mesh.quality import worst
 from magshell.model import symmetry
 from magshell.model.supports import SymmetryPlane
-from magshell.model.words import offset_of
+from magshell.model.words import offset_of, span
 from magshell.problem import (
     fields,
     load_report,
@@ -245,10 +245,7 @@ def _shell(problem: Problem, figures: _Whole) -> Iterator[tuple[str, str]]:
     least, greatest = figures.thinnest, figures.thickest
     uniform = greatest - least <= 1e-9 * greatest
     offset = offset_of(shell.parts[0]) if len(shell.parts) == 1 else ""
-    yield (
-        "thickness h",
-        (show(greatest, LENGTH) if uniform else f"{show(least, LENGTH)} to {show(greatest, LENGTH)}") + offset,
-    )
+    yield "thickness h", span(np.array([least, greatest])) + offset
     densities = {layer.density for part in shell.parts for layer in part.layers}
     if len(densities) == 1 and (density := densities.pop()) is not None:
         yield "density rho", show(density, DENSITY)
