@@ -96,7 +96,6 @@ class Discretisation:
         cliques = [clique for term in self.terms for clique in term.couplings()]
         self.numbering = Numbering(self.rows, self.free, cliques, ordering)
         self.dofs = self.numbering.dofs
-        self._thickness = float(make.thickness.mean())
         self._insertion = Insertion(self.numbering, model.constraints)
         self.shell.place(self.numbering, model.constraints)
         self.loads.place(self._insertion)
@@ -205,7 +204,7 @@ class Discretisation:
     def _unit(self, column: int) -> float:
         if column < COLUMNS["u"].stop:
             return self.mesh.size
-        return 1.0 / self._thickness if column == COLUMNS["phi"].start else 1.0
+        return 1.0 / self.model.shell.greatest_thickness if column == COLUMNS["phi"].start else 1.0
 
     def _relative(self, residual: FloatArray, squares: FloatArray, inner: float) -> dict[str, float]:
         """Norms by kind above their round-off, over the elements' forces and the loads of that kind.

@@ -23,6 +23,7 @@ from magshell.mesh.checks import (
 )
 from magshell.mesh.edges import Edges, find_edges, is_triangle
 from magshell.mesh.geometry import COINCIDENT, check_shapes
+from magshell.mesh.ranges import Range, elements_between
 from magshell.mesh.unmatched import check_unmatched
 from magshell.mesh.wording import place
 
@@ -228,6 +229,28 @@ class Mesh:
         nodes = np.arange(len(self.points))
         chosen = self._select(name, "node", nodes, self.points[:, None], (x1, x2, x3))
         return self._with_groups(node_groups={**self.node_groups, name: chosen})
+
+    def select_elements(self, name: str, x1: Range = None, x2: Range = None, x3: Range = None) -> Mesh:
+        """The same mesh with one more element group: the elements between these coordinates.
+
+        Parameters
+        ----------
+        name : str
+            Of the new group.
+        x1, x2, x3 : (float, float) or None
+            Least and greatest coordinate, m, met to within 1e-6 of the size of the mesh; None leaves one free.
+
+        Raises
+        ------
+        InputError
+            No element is there, one lies across a bound, no range is given, or the name is taken.
+        """
+        check_name(name, "element", self._kinds)
+        try:
+            chosen = locked(elements_between(self.points, self.elements, (x1, x2, x3), self.size))
+        except InputError as error:
+            raise InputError(f"Group '{name}': {error}.") from None
+        return self._with_groups(element_groups={**self.element_groups, name: chosen})
 
     def _select(
         self, name: str, kind: str, items: IntArray, positions: FloatArray, wanted: tuple[float | None, ...]

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from magshell.arrays import FloatArray
+from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.drawing import drawing
 from magshell.errors import InputError, NothingLoads, suggest
 from magshell.magnetics.deformation_gradient_energy import DeformationGradientEnergy
@@ -20,6 +20,7 @@ from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.model import symmetry
 from magshell.model.course import Amounts, Course, Loading
 from magshell.model.loads import Applied, Load
+from magshell.model.parts import REST, Part
 from magshell.model.rigid import check_supported
 from magshell.model.rows import Rows, rows_of
 from magshell.model.shell import Shell
@@ -28,7 +29,6 @@ from magshell.model.supports import Constraints, Support, SymmetryPlane, resolve
 from magshell.multipliers import amplitudes
 from magshell.shell.normals import nodal_normals
 from magshell.shell.state import State
-from magshell.shell.unknowns import COLUMNS
 
 # Sine of the angle between mid-surface and mirror plane below which the shell does not cross the plane.
 TOUCHING = 1e-6
@@ -131,22 +131,38 @@ class Model:
                 raise InputError(f"{where}: u{stage.component} of probe '{stage.probe}' is held by a support")
 
     def _check_the_micro_rotation_matters(self) -> None:
-        if self.shell.material.coupling_modulus > 0.0:
+        mesh = self.shell.mesh
+        tied = self.shell.mean_of("coupling_modulus") > 0.0
+        if tied.all():
             return
-        if any(np.any(forces[:, COLUMNS["omega"]]) for forces in self.forces_at_rest):
-            worker = "a moment"
-        elif any(one.pairs is not None and one.pairs.column_field == "omega" for one in self.applied):
-            worker = "a follower"
-        elif self.field.magnitude > 0.0 and not isinstance(self.coupling, DeformationGradientEnergy):
-            worker = type(self.coupling).__name__
-        else:
-            return
-        if not self.shell.micro_rotation:
-            raise InputError(f"shell: {worker} works on the micro-rotation, which this shell does not have")
-        raise InputError(
-            f"material: coupling_modulus is 0, so the micro-rotation that {worker} works on "
-            "never reaches the deformation; the source takes a tenth of shear_modulus"
-        )
+        loose = np.ones(len(mesh.points), dtype=bool)
+        loose[mesh.elements[tied]] = False
+        for part in self.shell.parts:
+            elements = part.elements[~tied[part.elements]]
+            if not elements.size or not (worker := self._works_on_micro_rotation(part, elements, loose)):
+                continue
+            if not self.shell.micro_rotation:
+                raise InputError(f"shell: {worker} works on the micro-rotation, which this shell does not have")
+            where = "material" if part.name == REST else f"region '{part.name}': material"
+            raise InputError(
+                f"{where}: coupling_modulus is 0, so the micro-rotation that {worker} works on "
+                "never reaches the deformation; the source takes a tenth of shear_modulus"
+            )
+
+    def _works_on_micro_rotation(self, part: Part, elements: IntArray, loose: AnyArray) -> str:
+        """What works on the micro-rotation of a part at nodes where nothing ties it to the deformation; or nothing."""
+        nodes = np.zeros(len(self.shell.mesh.points), dtype=bool)
+        nodes[self.shell.mesh.elements[elements]] = True
+        nodes &= loose
+        if any(np.any(forces[nodes, 7:]) for forces in self.forces_at_rest):
+            return "a moment"
+        pairs = [one.pairs for one in self.applied if one.pairs is not None and one.pairs.column_field == "omega"]
+        if any(nodes[one.columns].any() for one in pairs):
+            return "a follower"
+        field = self.field.magnitude > 0.0 and not isinstance(self.coupling, DeformationGradientEnergy)
+        if field and (len(self.shell.parts) == 1 or np.any(part.remanence)):
+            return type(self.coupling).__name__
+        return ""
 
     def _check_something_loads(self) -> None:
         if any(np.any(amounts.held) or np.any(amounts.loads) for amounts in self._ends):

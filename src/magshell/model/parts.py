@@ -7,9 +7,10 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from magshell.arrays import AnyArray, FloatArray, IntArray
+from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError, suggest
 from magshell.magnetics.remanence import Remanence
+from magshell.magnetics.remanence.groups import only
 from magshell.mesh import Mesh
 from magshell.model.region import NO_REMANENCE, OFFSETS, Group, Layer, Region
 from magshell.model.thickness import Thickness
@@ -53,8 +54,17 @@ class Part(NamedTuple):
     remanence: FloatArray
 
 
+class Heights(NamedTuple):
+    """The arrays of a `Part` that its thickness gives."""
+
+    at_points: FloatArray
+    at_nodes: FloatArray
+    offset_at_points: FloatArray
+    offset_at_nodes: FloatArray
+
+
 class Draft(NamedTuple):
-    """A part before its arrays are made; `where` names it in messages, `label` among the keys of the shell."""
+    """A part before its arrays are made; `where` names it in messages."""
 
     name: str
     where: str
@@ -133,71 +143,75 @@ def drafts_of(shell: Made) -> list[Draft]:
     return found
 
 
-def parts_of(shell: Made, drafts: Sequence[Draft], remanence: bool = True) -> tuple[Part, ...]:
-    """The drafts with their arrays; without the remanence that is zero.
+def heights_of(shell: Made, drafts: Sequence[Draft]) -> list[Heights]:
+    """Thickness of the layers of each draft, and where the mesh lies.
 
     Raises
     ------
     InputError
-        Thickness or remanence that is not finite, or thickness that is not positive, in an element.
+        Thickness that is not finite or not positive in an element.
     """
     coordinates = shell.mesh.points[shell.mesh.elements]
-    points, weights = shell.element.integration(coordinates)
     varying = any(callable(layer.thickness) for draft in drafts for layer in draft.layers)
-    positions = np.zeros((0, weights.shape[1], 3))
-    if varying or remanence:
-        positions = np.einsum("epn,enx->epx", shell.element.functions(8, points, coordinates).values, coordinates)
-    flux = _Sampled(shell.mesh, positions, drafts, lambda layer: layer.remanence)
-    at_points, at_nodes = (
-        _Sampled(shell.mesh, places, drafts, lambda layer: layer.thickness) for places in (positions, coordinates)
-    )
-    parts = []
+    count = shell.element.integration(coordinates)[1].shape[1]
+    positions = _positions(shell) if varying else np.zeros((0, count, 3))
+    sampled = [_Sampled(shell.mesh, at, drafts, lambda layer: layer.thickness) for at in (positions, coordinates)]
+    found = []
     for draft in drafts:
-        count = len(draft.elements)
-        heights = [
-            np.stack(
-                [
-                    sampled.of(layer.thickness, draft.elements)
-                    if callable(layer.thickness)
-                    else np.full((count, places), float(layer.thickness))
-                    for layer in draft.layers
-                ],
-                axis=-1,
-            )
-            for sampled, places in ((at_points, weights.shape[1]), (at_nodes, 8))
-        ]
+        heights = [_heights(draft, one) for one in sampled]
         if varying:
             _check_heights(shell.mesh, draft, heights)
-        offsets = [_offset(draft.offset, height.sum(axis=-1)) for height in heights]
-        vectors = np.zeros((*heights[0].shape, 3))
-        if remanence:
-            for number, layer in enumerate(draft.layers):
-                if layer.remanence is not NO_REMANENCE:
-                    vectors[:, :, number] = flux.of(layer.remanence, draft.elements)
-            _check_remanence(draft, vectors)
-        parts.append(
-            Part(
-                name=draft.name,
-                elements=draft.elements,
-                layers=draft.layers,
-                layered=draft.layered,
-                levels=draft.levels,
-                at_points=heights[0],
-                at_nodes=heights[1],
-                offset_at_points=offsets[0],
-                offset_at_nodes=offsets[1],
-                remanence=vectors,
-            )
-        )
+        found.append(Heights(*heights, *(_offset(draft.offset, height.sum(axis=-1)) for height in heights)))
+    return found
+
+
+def parts_of(shell: Made, drafts: Sequence[Draft], heights: Sequence[Heights]) -> tuple[Part, ...]:
+    """The drafts with all their arrays.
+
+    Raises
+    ------
+    InputError
+        Remanence that is not finite in an element.
+    """
+    sampled = _Sampled(shell.mesh, _positions(shell), drafts, lambda layer: layer.remanence)
+    parts = []
+    for draft, height in zip(drafts, heights, strict=True):
+        remanence = np.zeros((*height.at_points.shape, 3))
+        for number, layer in enumerate(draft.layers):
+            if layer.remanence is not NO_REMANENCE:
+                remanence[:, :, number] = sampled.of(layer.remanence, draft.elements)
+        _check_remanence(draft, remanence)
+        made = draft.name, draft.elements, draft.layers, draft.layered, draft.levels
+        parts.append(Part(*made, *height, remanence))
     return tuple(parts)
 
 
+def _positions(shell: Made) -> FloatArray:
+    """Integration points (elements, p, 3), m."""
+    coordinates = shell.mesh.points[shell.mesh.elements]
+    points, _ = shell.element.integration(coordinates)
+    functions = shell.element.functions(8, points, coordinates).values
+    return np.asarray(np.einsum("epn,enx->epx", functions, coordinates))
+
+
+def _heights(draft: Draft, sampled: _Sampled) -> FloatArray:
+    """Thickness of each layer (n, places, layers)."""
+    heights = np.empty((len(draft.elements), sampled.count, len(draft.layers)))
+    for number, layer in enumerate(draft.layers):
+        if callable(layer.thickness):
+            heights[..., number] = sampled.of(layer.thickness, draft.elements)
+        else:
+            heights[..., number] = layer.thickness
+    return heights
+
+
 class _Sampled:
-    """What callables of the layers give at places (elements, p, 3): each is asked once, for all elements that use it."""
+    """What callables of the layers give at places (elements, p, 3): each is asked once, for all that use it."""
 
     def __init__(self, mesh: Mesh, places: FloatArray, drafts: Sequence[Draft], what: Any) -> None:
         self._mesh, self._places, self._drafts, self._what = mesh, places, drafts, what
         self._known: dict[int, FloatArray] = {}
+        self.count = places.shape[1]
 
     def of(self, sample: Any, elements: IntArray) -> FloatArray:
         """Values at the places of some elements."""
@@ -205,11 +219,8 @@ class _Sampled:
             users = [
                 draft.elements for draft in self._drafts if any(self._what(layer) is sample for layer in draft.layers)
             ]
-            asked = self._places
-            if sum(map(len, users)) < len(asked):
-                asked = np.full(self._places.shape, np.nan)
-                for members in users:
-                    asked[members] = self._places[members]
+            members = np.concatenate(users)
+            asked = self._places if len(members) == len(self._places) else only(members, self._places)
             self._known[id(sample)] = np.asarray(sample(self._mesh, asked), dtype=float)
         return self._known[id(sample)][elements]
 
@@ -260,13 +271,12 @@ def _draft(shell: Made, region: Region | None, name: str, where: str, members: I
         for what, value in (("thickness", thickness), ("material", material)):
             if value is None:
                 raise InputError(f"{where}: {what} is missing" + (", and the shell has layers" if shell.layers else ""))
+        assert thickness is not None
         layers = (Layer(thickness, material, shell.remanence if given.remanence is None else given.remanence),)
     resolved = []
     for number, layer in enumerate(layers):
         at = f"{where}: layers[{number}]" if layered else where
-        of_material = (
-            f"{at}: material" if layered or (region is not None and region.material is not None) else "material"
-        )
+        of_material = f"{at}: material" if layered or given.material is not None else "material"
         thickness = layer.thickness if callable(layer.thickness) else positive(f"{at}: thickness", layer.thickness, "m")
         own = density if layer.density is None else positive(f"{at}: density", layer.density, "kg/m^3")
         resolved.append(
@@ -348,7 +358,7 @@ def _check_heights(mesh: Mesh, draft: Draft, heights: Sequence[FloatArray]) -> N
 
 
 def _check_remanence(draft: Draft, vectors: FloatArray) -> None:
-    bad: AnyArray = ~np.isfinite(vectors).all(axis=(1, 3))
+    bad = np.atleast_2d(~np.isfinite(vectors).all(axis=(1, 3)))
     if bad.any():
         row, layer = (int(index) for index in np.argwhere(bad)[0])
         where = f"{draft.where}: layers[{layer}]: " if draft.layered else ""

@@ -13,7 +13,8 @@ from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError, suggest
 from magshell.magnetics.remanence import Remanence
 from magshell.mesh import Mesh
-from magshell.model.parts import Draft, Part, checked_material, drafts_of, parts_of, positive
+from magshell.model.overall import overall_remanence
+from magshell.model.parts import Draft, Heights, Part, checked_material, drafts_of, heights_of, parts_of, positive
 from magshell.model.region import NO_REMANENCE, Layer, Region
 from magshell.model.thickness import Thickness
 from magshell.shell.elements import ELEMENTS, QUADRATIC
@@ -76,6 +77,7 @@ class Shell:
     offset: str | float = "middle"
     levels: int = 2
     _drafts: list[Draft] = dataclasses.field(init=False, repr=False)
+    _heights: list[Heights] = dataclasses.field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         put = object.__setattr__
@@ -104,8 +106,7 @@ class Shell:
             raise InputError(
                 f"shell: thickness_stretch is '{self.thickness_stretch}'. {suggest(self.thickness_stretch, STRETCHES)}"
             )
-        if any(callable(layer.thickness) for draft in self._drafts for layer in draft.layers):
-            parts_of(self, self._drafts, remanence=False)
+        put(self, "_heights", heights_of(self, self._drafts))
 
     def __repr__(self) -> str:
         made = [] if self.thickness is None else [f"thickness {in_words(self.thickness)}"]
@@ -123,7 +124,43 @@ class Shell:
         InputError
             The remanence is not finite in an element.
         """
-        return parts_of(self, self._drafts)
+        return parts_of(self, self._drafts, self._heights)
+
+    @property
+    def plain(self) -> bool:
+        """Whether it is of one thickness and material, with the mesh in the middle of it."""
+        first = self._drafts[0]
+        varies = callable(first.layers[0].thickness)
+        return len(self._drafts) == 1 and not (first.layered or varies or first.offset not in ("middle", 0.0))
+
+    @property
+    def greatest_thickness(self) -> float:
+        """m."""
+        return max(float(one.at_nodes.sum(axis=-1).max()) for one in self._heights)
+
+    @cached_property
+    def faces_at_nodes(self) -> FloatArray:
+        """Heights of the bottom and the top face over the mesh at the nodes of the elements, (elements, 8, 2), m."""
+        faces = np.empty((*self.mesh.elements.shape, 2))
+        for draft, height in zip(self._drafts, self._heights, strict=True):
+            half = 0.5 * height.at_nodes.sum(axis=-1)
+            faces[draft.elements, :, 0], faces[draft.elements, :, 1] = -half, half
+            faces[draft.elements] -= height.offset_at_nodes[..., None]
+        return faces
+
+    def mean_of(self, parameter: str) -> FloatArray:
+        """A parameter of the material of each element (elements,), its mean over the layers."""
+        mean = np.empty(len(self.mesh.elements))
+        for draft, height in zip(self._drafts, self._heights, strict=True):
+            values = np.array([getattr(layer.material, parameter) for layer in draft.layers])
+            shares = height.at_points.mean(axis=1)
+            mean[draft.elements] = values[0] if len(values) == 1 else shares @ values / shares.sum(axis=1)
+        return mean
+
+    @cached_property
+    def overall_remanence(self) -> Remanence:
+        """Remanence of all parts together; of layers the mean over the thickness."""
+        return overall_remanence(self.remanence, self._drafts)
 
     @cached_property
     def part_of(self) -> AnyArray:

@@ -1,8 +1,8 @@
 """Thickness that varies over the mid-surface: by a function, along a direction, from a table.
 
 A `Thickness` is a callable that takes the mesh and points of each of its elements, shape (elements, points, 3), and
-gives the thickness there, shape (elements, points), m. A point that nobody asks for is NaN, and so may its thickness be.
-Continuous ones taper across the edges of elements; stepped ones are constant in each element.
+gives the thickness there, shape (elements, points), m. A point that nobody asks for is NaN, and so may its thickness
+be. Continuous ones taper across the edges of elements; stepped ones are constant in each element.
 """
 
 from __future__ import annotations
@@ -199,7 +199,7 @@ def _between_nodes(mesh: Mesh, points: FloatArray, at_nodes: FloatArray) -> Floa
 def _nearest(
     places: FloatArray, values: FloatArray, targets: FloatArray, reach: FloatArray, tolerance: float | None
 ) -> FloatArray:
-    """Values (n,) of the places nearest to targets (n, 3), which are no farther than the reach (n,) or the tolerance."""
+    """Values (n,) of the places nearest to targets (n, 3), no farther than the reach (n,) or the tolerance."""
     from scipy.spatial import cKDTree
 
     tree = cKDTree(places)

@@ -96,8 +96,11 @@ class Solid(NamedTuple):
 
 
 def faces(path: Path, step: Step, heights: Sequence[float] = (-0.5, 0.5)) -> list[FloatArray]:
-    """Deformed positions (nodes, 3) at fractions of the thickness over the mid-surface: x = X + u + z (1 + z φ) d."""
-    reached, thickness = converged(path.discretisation, step), path.model.shell.thickness
+    """Deformed positions (nodes, 3) at fractions of the thickness over the mid-surface: x = X + u + z (1 + z φ) d.
+
+    The shell has one thickness.
+    """
+    reached, thickness = converged(path.discretisation, step), path.model.shell.greatest_thickness
     middle, director, phi = reached.mesh.points + reached.displacement, reached.director(), reached.phi()[:, None]
     return [middle + z * (1.0 + z * phi) * director for z in (fraction * thickness for fraction in heights)]
 

@@ -193,8 +193,9 @@ def second_axis(axes: Axes, factor: float, label: str) -> None:
 
 def load_per_mT(path: Path) -> float:
     """The nondimensional load of one millitesla: 10³ · 10⁻³ T · |Brem| / (mu mu0)."""
-    remanence = np.linalg.norm(path.discretisation.reference.remanence, axis=-1).max()
-    return float(remanence / (path.model.shell.material.shear_modulus * path.model.coupling.vacuum_permeability))
+    shell = path.model.shell
+    remanence = np.linalg.norm(shell.remanence_at_points, axis=-1).max(axis=1)
+    return float((remanence / shell.mean_of("shear_modulus")).max() / path.model.coupling.vacuum_permeability)
 
 
 def _times(factor: float) -> Any:

@@ -126,7 +126,7 @@ def remanence_marks(model: Model, shown: FloatArray, axes: FloatArray, template:
 
     mesh = model.shell.mesh
     middle = centres(mesh.points, mesh.elements)[:, None]
-    vectors = (carried if template else _released)(model.shell.remanence, mesh, middle)[:, 0]
+    vectors = (carried if template else _released)(model.shell.overall_remanence, mesh, middle)[:, 0]
     sizes = np.linalg.norm(vectors, axis=1)
     if not sizes.any():
         return []

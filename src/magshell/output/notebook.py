@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from magshell.arrays import FloatArray
+from magshell.model.parts import Part
+from magshell.model.words import name_of, offset_of, thickness_of
 from magshell.output.curve import FIELD, abscissa, curves, dress
 from magshell.output.scene import best_axes
 from magshell.output.sketch import Lines, paint, tessellate, triad
@@ -107,12 +109,10 @@ def _mesh_rows(mesh: Mesh) -> list[tuple[str, str]]:
 
 def _model_rows(model: Model) -> list[tuple[str, str]]:
     shell, mesh = model.shell, model.shell.mesh
-    parameters = ", ".join(f"{name} {_parameter(name, value)}" for name, value in shell.material._asdict().items())
     stretch = "" if shell.thickness_stretch == "linear" else f", thickness stretch {shell.thickness_stretch}"
     rows = [
         ("elements, nodes", f"{len(mesh.elements)}, {len(mesh.points)}"),
-        ("shell", f"thickness {show(shell.thickness, LENGTH)}, element {shell.element.name}{stretch}"),
-        ("material", f"{type(shell.material).__name__}, {parameters}"),
+        *_make_rows(shell.parts, f"element {shell.element.name}{stretch}"),
     ]
     strength = np.linalg.norm(_remanence(model), axis=1)
     if strength.any():
@@ -129,6 +129,29 @@ def _model_rows(model: Model) -> list[tuple[str, str]]:
     if model.probes:
         rows.append(("probes", _listed(list(model.probes))))
     return rows
+
+
+def _make_rows(parts: Sequence[Part], element: str) -> list[tuple[str, str]]:
+    """Thickness and material; of several parts and layers those of each."""
+    if len(parts) == 1 and not parts[0].layered:
+        part = parts[0]
+        return [
+            ("shell", f"thickness {thickness_of(part)}{offset_of(part)}, {element}"),
+            ("material", _material(part.layers[0].material)),
+        ]
+    rows = [("shell", f"{element}{offset_of(parts[0]) if len(parts) == 1 else ''}")]
+    for part in parts[:MOST_NAMES]:
+        layers = [f"{thickness_of(part, k)} of {_material(layer.material)}" for k, layer in enumerate(part.layers)]
+        elements = f"{len(part.elements)} elements{offset_of(part)}: " if len(parts) > 1 else ""
+        rows.append((name_of(part) if len(parts) > 1 else "layers", elements + "; ".join(layers)))
+    if len(parts) > MOST_NAMES:
+        rows.append(("and", f"{len(parts) - MOST_NAMES} more regions"))
+    return rows
+
+
+def _material(material: Any) -> str:
+    parameters = ", ".join(f"{name} {_parameter(name, value)}" for name, value in material._asdict().items())
+    return f"{type(material).__name__}, {parameters}"
 
 
 def _parameter(name: str, value: float) -> str:
@@ -180,7 +203,7 @@ def _listed(names: Sequence[str]) -> str:
 def _remanence(model: Model) -> FloatArray:
     """At the middle of each element (elements, 3)."""
     mesh = model.shell.mesh
-    return np.asarray(model.shell.remanence(mesh, _middles(mesh)[:, None]))[:, 0]
+    return np.asarray(model.shell.overall_remanence(mesh, _middles(mesh)[:, None]))[:, 0]
 
 
 def _middles(mesh: Mesh) -> FloatArray:

@@ -156,7 +156,7 @@ def setup_scene(model: Model, pixels: tuple[int, int], template: bool = False, b
 
 
 def _in_template(model: Model, at_nodes: FloatArray) -> FloatArray:
-    there = placed(model.shell.remanence, model.shell.mesh, at_nodes)
+    there = placed(model.shell.overall_remanence, model.shell.mesh, at_nodes)
     if there is None:
         raise InputError("remanence: no part of it has a template: nothing was magnetised in another shape")
     return there

@@ -16,6 +16,8 @@ from pydantic import AfterValidator, BeforeValidator, StrictBool, ValidationInfo
 from magshell import units
 from magshell.errors import InputError, suggest
 from magshell.magnetics import COUPLINGS
+from magshell.model.parts import MOST_LEVELS
+from magshell.model.region import OFFSETS
 from magshell.model.supports import DIMENSION_OF_FIELD
 from magshell.shell.elements import ELEMENTS
 
@@ -122,6 +124,16 @@ def _one_each(what: str) -> Callable[[object], object]:
     return read
 
 
+def _offset(value: object) -> object:
+    return value if value in OFFSETS else _read(value, units.LENGTH)
+
+
+def _levels(value: object) -> object:
+    if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= MOST_LEVELS:
+        raise InputError(f"{units.quoted(value)} is not a whole number from 1 to {MOST_LEVELS}")
+    return value
+
+
 def not_empty(value: object) -> object:
     """A list or table that must hold something."""
     if value in ([], {}, ()):
@@ -175,6 +187,7 @@ Names = Annotated[tuple[Name, ...], BeforeValidator(_one_or_more)]
 
 Divisions = Annotated[tuple[Count, Count], _list_of(2, "numbers of elements in the two directions")]
 AngleRange = Annotated[tuple[Degrees, Degrees], _list_of(2, "first and last angle")]
+LengthRange = Annotated[tuple[Length, Length], _list_of(2, "least and greatest coordinate")]
 Position = Annotated[tuple[Length, Length, Length], _list_of(3, "coordinates X1, X2, X3")]
 FluxVector = Annotated[
     tuple[FluxDensity, FluxDensity, FluxDensity],
@@ -239,6 +252,8 @@ def _nodal_value(value: object, info: ValidationInfo) -> float | tuple[float, ..
 
 
 Switch = StrictBool
+Offset = Annotated[str | float, BeforeValidator(_offset)]
+Levels = Annotated[int, BeforeValidator(_levels)]
 NodalField = Literal["u", "w", "phi", "omega"]
 Component = Annotated[Literal[1, 2, 3] | None, AfterValidator(_component)]
 NodalValue = Annotated[float | tuple[float, float, float], BeforeValidator(_nodal_value)]

@@ -61,8 +61,8 @@ class Strength:
         return 12.0 * force * self.extent / (self.youngs_modulus * self.thickness**3)
 
 
-def strength(problem: Problem, extent: float, youngs_modulus: float) -> Strength:
-    """The loads of a problem, in numbers."""
+def strength(problem: Problem, extent: float, thickness: float, youngs_modulus: float) -> Strength:
+    """The loads of a problem, in numbers, against a thickness and a modulus."""
     model = problem.model
     peaks = [max(map(abs, load.history or (1.0,))) for load in model.loads]
     sizes = [load.size(forces) for load, forces in zip(model.loads, model.forces_at_rest, strict=True)]
@@ -75,7 +75,7 @@ def strength(problem: Problem, extent: float, youngs_modulus: float) -> Strength
         weight=weight,
         pressure=pressure,
         extent=extent,
-        thickness=problem.model.shell.thickness,
+        thickness=thickness,
         youngs_modulus=youngs_modulus,
     )
 
@@ -98,11 +98,13 @@ def lines(problem: Problem, strong: Strength) -> Iterator[tuple[str, str]]:
 
 def doubts(problem: Problem, strong: Strength) -> Iterator[str]:
     """Magnitudes that no experiment has, most often a slip of units."""
-    density = problem.model.shell.density
-    if density is not None and not 10.0 <= density <= 25e3:
-        what = "lighter than a foam" if density < 10.0 else "heavier than any metal"
-        yield f"the density is {density:.3g} kg/m^3: {what}; check shell.density"
-    if density is not None and not strong.weight:
+    densities = [layer.density for part in problem.model.shell.parts for layer in part.layers]
+    known = sorted({density for density in densities if density is not None})
+    for density in known:
+        if not 10.0 <= density <= 25e3:
+            what = "lighter than a foam" if density < 10.0 else "heavier than any metal"
+            yield f"the density is {density:.3g} kg/m^3: {what}; check shell.density"
+    if known and not strong.weight:
         yield "there is a density but no gravity: the density does nothing"
     beyond = "beyond any experiment; check the units"
     if strong.bending > 1e5:

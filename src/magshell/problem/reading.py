@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 MOST_ERRORS = 10
 MOST_BYTES = 16 * 2**20
+LISTS_OF_TABLES = ("supports", "loads", "remanence", "stages", "regions", "layers")
 
 
 class Source(NamedTuple):
@@ -147,16 +148,14 @@ def _lines(error: ValidationError, name: str) -> list[str]:
 
 def _located(details: Mapping[str, Any]) -> tuple[str, str]:
     """Key as a user would write it, and what is wrong with it."""
-    from magshell.problem.schema import ProblemFile
-
-    where = [part for part in details["loc"] if part != "[key]"]
+    found = [part for part in details["loc"] if part != "[key]"]
     context = details.get("ctx", {})
-    choice, depth = ProblemFile.chosen_by.get(str(where[0]) if where else "", ("", 0))
-    if where[:1] == ["mesh"]:
-        choice = "" if where[1:2] == ["file"] else choice
-        del where[1:2]  # file or generator
-    if choice and len(where) > depth:
-        del where[depth]
+    if found[:1] == ["mesh"]:
+        of_file = found[1:2] == ["file"]
+        del found[1:2]  # file or generator
+        where, place, choice = (found, "", "") if of_file else _without_choices(found)
+    else:
+        where, place, choice = _without_choices(found)
     match details["type"]:
         case "key_error":
             where.append(context["key"])
@@ -167,18 +166,20 @@ def _located(details: Mapping[str, Any]) -> tuple[str, str]:
             message = "is missing"
         case "union_tag_not_found":
             where.append(choice)
-            message = f"is missing. {suggest('', _kinds(str(where[0])))}"
+            message = f"is missing. {suggest('', _kinds(place))}"
         case "union_tag_invalid":
             where.append(choice)
             tag = str(context["tag"])
-            message = f"{quoted(tag)} is not known. {suggest(tag, _kinds(str(where[0])))}"
+            message = f"{quoted(tag)} is not known. {suggest(tag, _kinds(place))}"
         case "literal_error":
             message = f"{quoted(details['input'])} is not one of {context['expected']}"
         case "model_attributes_type" | "dict_type":
             message = "is not a table of keys and values"
         case "tuple_type" | "list_type":
             message = (
-                "is not a list" if where[-1] not in ProblemFile.chosen_by else f"is not a list: write [[{where[-1]}]]"
+                f"is not a list: write [[{_pattern(where).replace('[]', '')}]]"
+                if where[-1] in LISTS_OF_TABLES
+                else "is not a list"
             )
         case "string_type":
             message = f"{quoted(details['input'])} is not text; write it in quotes"
@@ -189,14 +190,43 @@ def _located(details: Mapping[str, Any]) -> tuple[str, str]:
     return _written(where), message
 
 
-def _kinds(table: str) -> list[str]:
-    """What the key that chooses the kind of a table may say."""
+def _without_choices(found: Sequence[str | int]) -> tuple[list[str | int], str, str]:
+    """The path of an error without what pydantic puts into it where a table is one of several kinds.
+
+    Returns
+    -------
+    list
+        The path.
+    str, str
+        The last part of it where kinds are chosen among, and the key that chooses there; empty if it has none.
+    """
+    from magshell.problem.schema import ProblemFile
+
+    where: list[str | int] = []
+    place = choice = ""
+    parts = iter(found)
+    for part in parts:
+        where.append(part)
+        if (pattern := _pattern(where)) in ProblemFile.chosen_by:
+            place, choice = pattern, ProblemFile.chosen_by[pattern]
+            next(parts, None)
+    return where, place, choice
+
+
+def _pattern(where: Sequence[str | int]) -> str:
+    """A path in which any number of an entry is `[]`."""
+    return "".join("[]" if isinstance(part, int) else f".{part}" for part in where).lstrip(".")
+
+
+def _kinds(place: str) -> list[str]:
+    """What the key that chooses the kind of a table at this place may say."""
     from magshell.magnetics.remanence import REMANENCES
     from magshell.materials import MATERIALS
     from magshell.model.loads import LOADS
     from magshell.model.supports import SUPPORTS
     from magshell.problem import schema
 
+    table = place.split(".")[-1].removesuffix("[]")
     if table == "mesh":
         fields = [kind.model_fields.get("generator") for kind in get_args(schema.Mesh)]
         return [get_args(field.annotation)[0] for field in fields if field is not None]

@@ -16,7 +16,7 @@ def doubts(problem: Problem) -> Iterator[str]:
     """Elements that have no place of their own."""
     shell = problem.model.shell
     points = centres(shell.mesh.points, shell.mesh.elements)[:, None]
-    elements = averaged(shell.remanence, shell.mesh, points)
+    elements = averaged(shell.overall_remanence, shell.mesh, points)
     if elements.size:
         yield (
             f"remanence: {counted(len(elements), 'element')} (first element {elements[0]}) with several places of the "

@@ -10,13 +10,21 @@ import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.materials import own_keys
-from magshell.mesh import Mesh
 from magshell.mesh.files import FileMesh
 from magshell.mesh.geometry import centres, unit
 from magshell.mesh.quality import worst
 from magshell.model import symmetry
 from magshell.model.supports import SymmetryPlane
-from magshell.problem import fields, load_report, remanence_report, schema, symmetry_report, triangle_report
+from magshell.model.words import offset_of, span
+from magshell.problem import (
+    fields,
+    load_report,
+    region_report,
+    remanence_report,
+    schema,
+    symmetry_report,
+    triangle_report,
+)
 from magshell.problem.building import Problem
 from magshell.problem.fields import dimension_of
 from magshell.problem.load_report import Strength
@@ -45,25 +53,24 @@ class Report:
 
 @dataclass(frozen=True)
 class _Figures:
-    """The magnitudes that the report and its doubts are about, SI."""
+    """The magnitudes of a part that the report and its doubts are about, SI."""
 
+    name: str
     extent: float
-    thickness: float
+    thinnest: float
+    thickest: float
     radius: float
     shear_modulus: float
+    softest: float
+    stiffest: float
     youngs_modulus: float
     poissons_ratio: float
     field: float
-    remanence: FloatArray
-    couple: float
-
-    @property
-    def strongest(self) -> float:
-        return float(self.remanence.max())
+    strongest: float
 
     @property
     def slenderness(self) -> float:
-        return self.extent / self.thickness
+        return self.extent / self.thinnest
 
     @property
     def magnetic_load(self) -> float:
@@ -76,17 +83,64 @@ class _Figures:
         stress = self.field * self.strongest / VACUUM_PERMEABILITY
         return 12.0 * stress / self.youngs_modulus * self.slenderness**2
 
+    @property
+    def bending_stiffness(self) -> float:
+        """E h³."""
+        return self.youngs_modulus * self.thinnest**3
+
+
+@dataclass(frozen=True)
+class _Whole:
+    """The figures of all parts, and magnitudes of the whole shell, SI."""
+
+    parts: list[_Figures]
+    extent: float
+    field: float
+    remanence: FloatArray
+    couple: float
+
+    @property
+    def strongest(self) -> float:
+        return float(self.remanence.max())
+
+    @property
+    def magnetic_load(self) -> float:
+        return max(part.magnetic_load for part in self.parts)
+
+    @property
+    def bending_load(self) -> float:
+        return max(part.bending_load for part in self.parts)
+
+    @property
+    def thinnest(self) -> float:
+        return min(part.thinnest for part in self.parts)
+
+    @property
+    def thickest(self) -> float:
+        return max(part.thickest for part in self.parts)
+
+    @property
+    def radius(self) -> float:
+        return min(part.radius for part in self.parts)
+
+    @property
+    def most_flexible(self) -> _Figures:
+        return min(self.parts, key=lambda part: part.bending_stiffness)
+
 
 def describe(problem: Problem) -> Report:
     """Describe a problem that has passed all checks."""
     figures = _figures(problem)
-    strong = load_report.strength(problem, figures.extent, figures.youngs_modulus)
+    soft = figures.most_flexible
+    strong = load_report.strength(problem, figures.extent, soft.thinnest, soft.youngs_modulus)
+    several = region_report.has_several(problem)
     return Report(
         sections={
             "Problem": [("title", problem.title), ("file", problem.source)],
             "Mesh": list(_mesh(problem, figures.extent)),
             "Shell": list(_shell(problem, figures)),
-            "Material": list(_material(problem, figures)),
+            **({"Regions": list(region_report.lines(problem))} if several else {}),
+            **({} if several else {"Material": list(_material(problem, figures.parts[0]))}),
             "Remanence": list(_remanence(problem, figures)),
             "Field": list(_field(problem, figures)),
             **({"Loads": list(load_report.lines(problem, strong))} if problem.file.loads else {}),
@@ -105,29 +159,47 @@ def problem_html(problem: Problem) -> str:
     return model_html(problem.model, problem.title, describe(problem).warnings)
 
 
-def _figures(problem: Problem) -> _Figures:
+def _figures(problem: Problem) -> _Whole:
     shell, flux = problem.model.shell, np.array(problem.file.field.flux_density)
-    mesh, material = shell.mesh, shell.material
-    mu, lam = material.shear_modulus, material.lame_lambda
-    vectors = shell.remanence(mesh, centres(mesh.points, mesh.elements)[:, None])[:, 0]
-    return _Figures(
-        extent=float(np.ptp(mesh.points, axis=0).max()),
-        thickness=shell.thickness,
-        radius=_smallest_radius(mesh),
-        shear_modulus=mu,
-        youngs_modulus=mu * (3.0 * lam + 2.0 * mu) / (lam + mu),
-        poissons_ratio=0.5 * lam / (lam + mu),
-        field=float(np.linalg.norm(flux)),
-        remanence=np.linalg.norm(vectors, axis=1),
-        couple=float(np.linalg.norm(np.cross(vectors, flux), axis=1).max()),
-    )
+    mesh = shell.mesh
+    vectors = shell.overall_remanence(mesh, centres(mesh.points, mesh.elements)[:, None])[:, 0]
+    extent, field = float(np.ptp(mesh.points, axis=0).max()), float(np.linalg.norm(flux))
+    remanence = np.linalg.norm(vectors, axis=1)
+    mu, lam = shell.mean_of("shear_modulus"), shell.mean_of("lame_lambda")
+    parts = []
+    for part in shell.parts:
+        one, thickness = part.elements[0], part.at_nodes.sum(axis=2)
+        moduli = [layer.material.shear_modulus for layer in part.layers]
+        ratios = [_poissons_ratio(layer.material.shear_modulus, layer.material.lame_lambda) for layer in part.layers]
+        parts.append(
+            _Figures(
+                name=part.name,
+                extent=extent,
+                thinnest=float(thickness.min()),
+                thickest=float(thickness.max()),
+                radius=_smallest_radius(mesh.points[mesh.elements[part.elements]]),
+                shear_modulus=float(mu[one]),
+                softest=min(moduli),
+                stiffest=max(moduli),
+                youngs_modulus=float(mu[one] * (3.0 * lam[one] + 2.0 * mu[one]) / (lam[one] + mu[one])),
+                poissons_ratio=max(ratios),
+                field=field,
+                strongest=float(remanence[part.elements].max()),
+            )
+        )
+    couple = float(np.linalg.norm(np.cross(vectors, flux), axis=1).max())
+    return _Whole(parts=parts, extent=extent, field=field, remanence=remanence, couple=couple)
 
 
-def _smallest_radius(mesh: Mesh) -> float:
-    """Least radius of curvature out of the surface, from the rise of the mid-side nodes; inf where flat."""
-    x = mesh.points[mesh.elements]
+def _poissons_ratio(mu: float, lam: float) -> float:
+    return 0.5 * lam / (lam + mu)
+
+
+def _smallest_radius(x: FloatArray) -> float:
+    """Least radius of curvature of elements (n, 8, 3), from the rise of their mid-side nodes; inf where flat."""
     start, end, middle = x[:, :4], np.roll(x[:, :4], -1, axis=1), x[:, 4:]
-    inward = 4.0 * centres(mesh.points, mesh.elements)[:, None] - 3.0 * middle - np.roll(middle, 2, axis=1)
+    centre = 0.5 * x[:, 4:].sum(axis=1) - 0.25 * x[:, :4].sum(axis=1)
+    inward = 4.0 * centre[:, None] - 3.0 * middle - np.roll(middle, 2, axis=1)
     normal = unit(np.cross(end - start, inward))
     rise = np.abs(((middle - 0.5 * (start + end)) * normal).sum(axis=2))
     chord = np.linalg.norm(end - start, axis=2)
@@ -168,19 +240,28 @@ def _worst(measure: tuple[int, float], meaning: str) -> str:
     return f"{measure[1]:.3g} ({meaning}) in element {measure[0]}"
 
 
-def _shell(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
-    yield "thickness h", show(figures.thickness, LENGTH)
-    if problem.model.shell.density is not None:
-        yield "density rho", show(problem.model.shell.density, DENSITY)
-    yield "L/h", f"{figures.slenderness:.4g} with the largest extent L = {show(figures.extent, LENGTH)}"
-    if math.isfinite(figures.radius):
-        least = f"with the least radius of curvature R = {show(figures.radius, LENGTH)}"
-        yield "R/h", f"{figures.radius / figures.thickness:.4g} {least}"
+def _shell(problem: Problem, figures: _Whole) -> Iterator[tuple[str, str]]:
+    shell = problem.model.shell
+    least, greatest = figures.thinnest, figures.thickest
+    uniform = greatest - least <= 1e-9 * greatest
+    offset = offset_of(shell.parts[0]) if len(shell.parts) == 1 else ""
+    yield "thickness h", span(np.array([least, greatest])) + offset
+    densities = {layer.density for part in shell.parts for layer in part.layers}
+    if len(densities) == 1 and (density := densities.pop()) is not None:
+        yield "density rho", show(density, DENSITY)
+    thin = "" if uniform else " where it is thinnest"
+    slenderness = figures.extent / least
+    yield "L/h", f"{slenderness:.4g}{thin} with the largest extent L = {show(figures.extent, LENGTH)}"
+    curved = [part for part in figures.parts if math.isfinite(part.radius)]
+    if curved:
+        worst = min(curved, key=lambda part: part.radius / part.thickest)
+        radius = f"with the least radius of curvature R = {show(worst.radius, LENGTH)}"
+        yield "R/h", f"{worst.radius / worst.thickest:.4g} {radius}"
 
 
 def _material(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
     material = problem.model.shell.material
-    yield "law", problem.file.material.law
+    yield "law", region_report.law_of(material)
     yield "shear modulus mu", show(material.shear_modulus, STRESS)
     yield "Lamé constant lambda", show(material.lame_lambda, STRESS)
     for key, described in own_keys(type(material)).items():
@@ -189,30 +270,36 @@ def _material(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
     yield "E, nu", f"{show(figures.youngs_modulus, STRESS)}, {figures.poissons_ratio:.4g}"
     ratio = material.coupling_modulus / material.shear_modulus
     yield "coupling modulus eta", f"{show(material.coupling_modulus, STRESS)} = {ratio:.4g} mu"
-    ratio = material.length_scale / figures.thickness
+    ratio = material.length_scale / figures.thinnest
     yield "length scale l", f"{show(material.length_scale, LENGTH)} = {ratio:.4g} h"
 
 
-def _remanence(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
+def _remanence(problem: Problem, figures: _Whole) -> Iterator[tuple[str, str]]:
     mesh, magnitude = problem.model.shell.mesh, figures.remanence
+    shared = region_report.shared(problem)
     for entry in problem.file.remanence:
         for group in entry.group or ():
-            yield group, f"{_span(magnitude, mesh.elements_of(group))}, {remanence_report.sense(entry)}"
+            members = np.intersect1d(mesh.elements_of(group), shared)
+            yield group, f"{_span(magnitude, members)}, {remanence_report.sense(entry)}"
         if entry.group is None:
-            yield "everywhere", f"{_span(magnitude, np.arange(len(magnitude)))}, {remanence_report.sense(entry)}"
+            where = "everywhere" if len(shared) == len(magnitude) else "elsewhere"
+            yield where, f"{_span(magnitude, shared)}, {remanence_report.sense(entry)}"
+    yield from region_report.remanences(problem)
     bare = int((magnitude == 0.0).sum())
     if bare:
         yield "none in", f"{bare} of {len(magnitude)} elements"
 
 
 def _span(magnitude: FloatArray, elements: IntArray) -> str:
+    if not elements.size:
+        return "no element"
     least, greatest = magnitude[elements].min(), magnitude[elements].max()
     if greatest - least <= 1e-9 * greatest:
         return show(greatest, FLUX_DENSITY)
     return f"{show(least, FLUX_DENSITY)} to {show(greatest, FLUX_DENSITY)}"
 
 
-def _field(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
+def _field(problem: Problem, figures: _Whole) -> Iterator[tuple[str, str]]:
     table = problem.file.field
     if figures.field == 0.0:
         yield "flux density B", "none"
@@ -262,26 +349,16 @@ def _coordinate(value: float, extent: float) -> str:
     return show(value if abs(value) > 1e-9 * extent else 0.0, LENGTH)
 
 
-def _doubts(problem: Problem, figures: _Figures, strong: Strength) -> Iterator[str]:
+def _doubts(problem: Problem, figures: _Whole, strong: Strength) -> Iterator[str]:
     """Magnitudes that no experiment has, most often a slip of units."""
-    modulus = show(figures.shear_modulus, STRESS)
-    if figures.slenderness < 5.0:
-        yield f"L/h is {figures.slenderness:.3g}: too thick for a shell; check shell.thickness and the mesh"
-    if figures.slenderness > 1e4:
-        yield f"L/h is {figures.slenderness:.3g}: thinner than any film; check shell.thickness and the mesh"
-    if figures.radius < 2.0 * figures.thickness:
-        yield f"R/h is {figures.radius / figures.thickness:.3g}: curved too tightly for its thickness"
+    for part in figures.parts:
+        where = "" if len(figures.parts) == 1 else f"region '{part.name}': "
+        yield from (where + doubt for doubt in _doubts_of(part))
     if figures.field > 5.0:
         field = show(figures.field, FLUX_DENSITY)
         yield f"the field is {field}: beyond most laboratories; check field.flux_density"
     if figures.strongest > 1.5:
         yield f"the remanence is {show(figures.strongest, FLUX_DENSITY)}: more than any magnet keeps"
-    if figures.shear_modulus < 1e3:
-        yield f"the shear modulus is {modulus}: softer than a gel; check material.shear_modulus"
-    if figures.shear_modulus > 1e10:
-        yield f"the shear modulus is {modulus}: stiffer than magnesium; check material.shear_modulus"
-    if figures.poissons_ratio > 0.4999:
-        yield f"Poisson's ratio is {figures.poissons_ratio:.6g}: nearly incompressible, slow to converge"
     if figures.field and not figures.strongest:
         yield "there is a field but no remanence: the field does nothing"
     elif figures.field and figures.couple < 1e-9 * figures.field * figures.strongest:
@@ -290,14 +367,32 @@ def _doubts(problem: Problem, figures: _Figures, strong: Strength) -> Iterator[s
         yield f"the bending load is {figures.bending_load:.2g}: the shell will hardly move; check the units"
     elif figures.bending_load > 1e5:
         yield f"the bending load is {figures.bending_load:.2g}: far beyond any experiment; check the units"
+    yield from region_report.doubts(problem)
     yield from remanence_report.doubts(problem)
     yield from load_report.doubts(problem, strong)
     yield from symmetry_report.doubts(problem)
     if problem.model.constraints.fixed[:, :3].all():
         yield "the supports hold every node: the displacement is given everywhere, nothing is left to move"
-    yield from triangle_report.doubts(problem.model.shell.mesh, figures.thickness, figures.radius)
+    yield from triangle_report.doubts(problem.model.shell.mesh, figures.thickest, figures.radius)
     worst_corner = worst(problem.model.shell.mesh)["scaled_jacobian"]
     if worst_corner.value < 0.2:
         yield f"element {worst_corner.element} is badly shaped (scaled Jacobian {worst_corner.value:.2g})"
     if not problem.file.probes:
         yield "there are no probes: the history will hold the load only"
+
+
+def _doubts_of(part: _Figures) -> Iterator[str]:
+    """Those of one part."""
+    if part.extent < 5.0 * part.thickest:
+        yield f"L/h is {part.extent / part.thickest:.3g}: too thick for a shell; check shell.thickness and the mesh"
+    if part.slenderness > 1e4:
+        yield f"L/h is {part.slenderness:.3g}: thinner than any film; check shell.thickness and the mesh"
+    if part.radius < 2.0 * part.thickest:
+        yield f"R/h is {part.radius / part.thickest:.3g}: curved too tightly for its thickness"
+    for modulus in sorted({part.softest, part.stiffest}):
+        if modulus < 1e3:
+            yield f"the shear modulus is {show(modulus, STRESS)}: softer than a gel; check material.shear_modulus"
+        if modulus > 1e10:
+            yield f"the shear modulus is {show(modulus, STRESS)}: stiffer than magnesium; check material.shear_modulus"
+    if part.poissons_ratio > 0.4999:
+        yield f"Poisson's ratio is {part.poissons_ratio:.6g}: nearly incompressible, slow to converge"

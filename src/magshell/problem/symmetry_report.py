@@ -34,6 +34,8 @@ def doubts(problem: Problem) -> Iterator[str]:
     """What breaks the mirror planes."""
     yield from symmetry.broken(problem.model)
     entries, model = problem.file.remanence, problem.model
+    if model.shell.overall_remanence is not model.shell.remanence:
+        return
     if not model.field.magnitude or len(entries) != 1 or entries[0].group or not REMANENCES[entries[0].kind].in_space:
         return
     for plane in symmetry.planes(model):

@@ -146,7 +146,7 @@ def _remanence(example: Example, body: Body) -> list[FloatArray]:
             continue
         half = 0.5 * example.arrow_length * vector / size
         normal = path.discretisation.normals[mesh.elements[element]].mean(axis=0)
-        middle = place + (0.5 * path.model.shell.thickness + ABOVE * example.arrow_length) * normal
+        middle = place + (0.5 * path.model.shell.greatest_thickness + ABOVE * example.arrow_length) * normal
         for copy in body.copies:
             ends = copy.of(np.stack([middle - half, middle + half]))
             arrows[tuple(np.round(ends.mean(axis=0), 7))] = ends

@@ -33,6 +33,7 @@ from magshell.evaluation.points import evaluate, level_stretch
 from magshell.magnetics import law
 from magshell.magnetics.law import OMEGA
 from magshell.model.course import Loading
+from magshell.model.parts import REST
 from magshell.shell.state import State
 
 # Angle (degrees) turned within an element: what is safe, and beyond which the mesh is a likely cause.
@@ -67,11 +68,14 @@ class Couple(NamedTuple):
         Largest angle between micro-rotation and material, degrees.
     element : int
         Where the ratio is largest.
+    modulus : float
+        Coupling modulus there, Pa.
     """
 
     ratio: float
     ahead: float
     element: int
+    modulus: float
 
 
 class Squash(NamedTuple):
@@ -148,7 +152,6 @@ def _worse(one: Measures, other: Measures) -> Measures:
 def _causes(discretisation: Discretisation, last: Measures, worst: Measures) -> Iterator[str]:
     """The causes, from the measures in the last state and the worst ones: limit, mesh, soft coupling, squashing."""
     turn, squash, couple = worst
-    coupling = discretisation.model.shell.material.coupling_modulus
     limited = couple is not None and (couple.ratio > NEAR_LIMIT or couple.ahead > RUNNING_AHEAD)
     if couple is not None and limited:
         yield (
@@ -156,7 +159,7 @@ def _causes(discretisation: Discretisation, last: Measures, worst: Measures) -> 
             f"{100 * couple.ratio:.0f} % of that in {_place(discretisation, couple.element)}"
             f"{_when(couple.ratio, last.couple and last.couple.ratio)}, and the micro-rotation "
             f"runs ahead by up to {couple.ahead:.0f}° (beyond 45° nothing holds it). Take a larger coupling_modulus "
-            f"than {coupling / 1e3:.4g} kPa, or a weaker field."
+            f"than {couple.modulus / 1e3:.4g} kPa{_of_part(discretisation, couple.element)}, or a weaker field."
         )
     if turn.angle > SAFE:
         one, other = turn.nodes
@@ -172,7 +175,8 @@ def _causes(discretisation: Discretisation, last: Measures, worst: Measures) -> 
             f"the micro-rotation is held softly: it runs ahead of the material by up to {couple.ahead:.0f}°, and the "
             f"couple of the field is {100 * couple.ratio:.0f} % of what it can transfer in "
             f"{_place(discretisation, couple.element)}{_when(couple.ratio, last.couple and last.couple.ratio)}. A "
-            f"larger coupling_modulus than {coupling / 1e3:.4g} kPa, or a weaker field, may help."
+            f"larger coupling_modulus than {couple.modulus / 1e3:.4g} kPa"
+            f"{_of_part(discretisation, couple.element)}, or a weaker field, may help."
         )
     if squash.determinant < SQUASHED:
         yield (
@@ -225,8 +229,8 @@ def _angles(one: FloatArray, other: FloatArray) -> FloatArray:
 def _couple(discretisation: Discretisation, state: State, loading: Loading) -> Couple | None:
     """None without a micro-rotation or a field."""
     model, reference = discretisation.model, discretisation.reference
-    modulus = model.shell.material.coupling_modulus
-    if not reference.body.layout.q or not modulus or not np.any(loading.flux_density):
+    modulus = model.shell.mean_of("coupling_modulus")
+    if not reference.body.layout.q or not modulus.any() or not np.any(loading.flux_density):
         return None
     fields = evaluate(reference, state, level_stretch(reference, state, loading.flux_density))
     F = fields.F.mean(axis=2)
@@ -236,15 +240,17 @@ def _couple(discretisation: Discretisation, state: State, loading: Loading) -> C
     c = np.linalg.norm(couple := _couples(discretisation, F, fields.R, loading.flux_density), axis=-1)
     axis = np.einsum("epyx,epy->epx", Q, couple) / np.maximum(c, np.finfo(float).tiny)[..., None]
     across = stretches.sum(axis=-1) - np.einsum("epx,epxy,epy->ep", axis, S, axis)
-    ratios = (c / (0.5 * modulus * across**2)).max(axis=1)
+    limit = 0.5 * modulus[:, None] * across**2
+    ratios = np.divide(c, limit, out=np.zeros_like(c), where=limit > 0.0).max(axis=1)
     cosine = 0.5 * (np.einsum("epxy,epxy->ep", Q, fields.R) - 1.0)
+    ahead = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))[modulus > 0.0].max()
     element = int(ratios.argmax())
-    return Couple(float(ratios[element]), float(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))).max()), element)
+    return Couple(float(ratios[element]), float(ahead), element, float(modulus[element]))
 
 
 def _couples(discretisation: Discretisation, F: FloatArray, R: FloatArray, flux_density: FloatArray) -> FloatArray:
     """Couple of the field per unit volume (elements, points, 3) that the law puts on the micro-rotation, N/m²."""
-    remanence = discretisation.reference.remanence.mean(axis=2)
+    remanence = discretisation.model.shell.remanence_at_points
     m, n = (np.einsum("epxy,epy->epx", by, remanence) for by in (F, R))
     return -law.evaluate(discretisation.model.coupling, m, n, flux_density)[1][..., OMEGA : OMEGA + 3]
 
@@ -256,7 +262,14 @@ def _place(discretisation: Discretisation, element: int) -> str:
     position = ", ".join(f"{1e3 * x:.3g}" for x in centre)
     groups = _touched(discretisation, element)
     beside = f", at support '{groups[0]}'" if groups else ""
-    return f"element {element} (at ({position}) mm{beside})"
+    return f"element {element} (at ({position}) mm{_of_part(discretisation, element, ', in')}{beside})"
+
+
+def _of_part(discretisation: Discretisation, element: int, of: str = " of") -> str:
+    """The region of an element; empty where there is one part only."""
+    shell = discretisation.model.shell
+    name = shell.parts[shell.part_of[element]].name
+    return "" if name == REST else f"{of} region '{name}'"
 
 
 def _touched(discretisation: Discretisation, element: int) -> list[str]:

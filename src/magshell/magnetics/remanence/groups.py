@@ -45,13 +45,13 @@ class ByGroup:
                     "one of them must give it up"
                 )
             owner[members] = group
-            values[members] = of(remanence, _only(members, points))[members]
+            values[members] = of(remanence, only(members, points))[members]
         return values
 
     def averaged(self, mesh: Mesh, points: FloatArray) -> IntArray:
         """Elements whose remanence is the mean over several places."""
         parts = [
-            averaged(remanence, mesh, _only(mesh.elements_of(group), points))
+            averaged(remanence, mesh, only(mesh.elements_of(group), points))
             for group, remanence in self._remanences.items()
         ]
         return np.unique(np.concatenate([np.zeros(0, dtype=np.int64), *parts]))
@@ -62,7 +62,7 @@ class ByGroup:
         moved = False
         for group, remanence in self._remanences.items():
             members = mesh.elements_of(group)
-            there = placed(remanence, mesh, _only(members, points))
+            there = placed(remanence, mesh, only(members, points))
             if there is not None:
                 positions[members] = there[members]
                 moved = True
@@ -74,7 +74,8 @@ def by_group(remanences: Mapping[str, Remanence]) -> Remanence:
     return ByGroup(remanences)
 
 
-def _only(members: IntArray, points: FloatArray) -> FloatArray:
+def only(members: IntArray, points: FloatArray) -> FloatArray:
+    """The points (elements, points, 3) of some elements; those of the others are NaN."""
     asked = np.full(points.shape, np.nan)
     asked[members] = points[members]
     return asked

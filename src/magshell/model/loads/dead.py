@@ -21,15 +21,18 @@ def nodal(field: str, vectors: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class DeadForces:
-    """Constant forces on the displacements; their potential is minus forces · u.
+    """Constant forces on displacements and directors; their potential is minus forces · u, and likewise for w.
 
     Attributes
     ----------
     on_u : ndarray, shape (nodes, 3)
         N.
+    on_w : ndarray, shape (nodes, 3), optional
+        N m.
     """
 
     on_u: FloatArray
+    on_w: FloatArray | None = None
 
     @property
     def conservative(self) -> bool:
@@ -41,7 +44,8 @@ class DeadForces:
 
     def forces(self, state: State) -> FloatArray:
         """The same at every state."""
-        return nodal("u", self.on_u)
+        forces = nodal("u", self.on_u)
+        return forces if self.on_w is None else forces + nodal("w", self.on_w)
 
     def stiffness(self, state: State) -> FloatArray:
         """None."""

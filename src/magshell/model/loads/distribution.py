@@ -19,7 +19,6 @@ from magshell.errors import InputError
 from magshell.model.loads.functions import loaded
 from magshell.model.shell import Shell
 from magshell.shell.elements import ElementType
-from magshell.shell.geometry import director_functions
 from magshell.shell.shape_functions import gauss_legendre
 
 # Gauss points along an edge: they measure an edge that bends by a right angle to 1e-6 of its length.
@@ -64,30 +63,6 @@ def nodal_areas(shell: Shell, members: IntArray) -> FloatArray:
     elements, areas = shell.mesh.elements[members], np.zeros(len(shell.mesh.points))
     np.add.at(areas, elements, _over_elements(shell.mesh.points[elements], shell.element, "u"))
     return areas
-
-
-def nodal_volumes(shell: Shell, normals: FloatArray, members: IntArray) -> FloatArray:
-    r"""Integrals (nodes,) of the functions of u over the undeformed volume of some elements, m³.
-
-    A section of the thickness h has, per unit parent area, the volume
-
-        ∫ det(A_1 + z D,1, A_2 + z D,2, D) dz = h (A_1 × A_2) · D + h³/12 (D,1 × D,2) · D.
-    """
-    mesh, element, h = shell.mesh, shell.element, shell.thickness
-    elements = mesh.elements[members]
-    points, weights = gauss_legendre(POINTS)
-    slopes = element.functions(8, points, mesh.points[elements]).derivatives
-    rest = element.functions(element.rest_nodes, points, mesh.points[elements])
-    ends = normals[elements[:, : element.rest_nodes]]
-    director = director_functions(ends, rest.values, rest.derivatives)
-    A = np.einsum("epan,enx->epax", slopes, mesh.points[elements])
-    D, dD = np.einsum("epn,enx->epx", director[:, :, 0], ends), np.einsum("epan,enx->epax", director[:, :, 1:], ends)
-    area, curved = (np.einsum("epx,epx->ep", np.cross(b[:, :, 0], b[:, :, 1]), D) for b in (A, dD))
-    sections = (h * area + h**3 / 12.0 * curved) * weights
-    volumes = np.zeros(len(mesh.points))
-    carried = loaded(element, points, mesh.points[elements]).values
-    np.add.at(volumes, elements, np.einsum("ep,epn->en", sections, carried))
-    return volumes
 
 
 def _along_edges(points: FloatArray, quadratic: bool) -> FloatArray:

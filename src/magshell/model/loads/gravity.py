@@ -1,8 +1,9 @@
 """Weight.
 
 Per unit mass the acceleration g does the work g · δx. The shell's mass is that of its undeformed volume, the change of
-area across the thickness of a curved shell included. It acts on the mid-surface: left out is its first moment about
-that, which puts the centre of mass off it by h²/12 times the sum of the two curvatures.
+area across the thickness of a curved shell included (`mass.py`). Where layers or an offset put it off the mesh, it acts
+at its height, and so on the director too. Left out is what curvature adds to that, which puts the centre of mass
+of a plain shell off its mid-surface by h²/12 times the sum of the two curvatures.
 """
 
 from __future__ import annotations
@@ -15,13 +16,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from magshell.arrays import FloatArray
-from magshell.errors import InputError
 from magshell.keys import HISTORY, Key
 from magshell.mesh.geometry import centres
 from magshell.model.loads.checks import vector
 from magshell.model.loads.dead import DeadForces
-from magshell.model.loads.distribution import nodal_volumes
 from magshell.model.loads.load import Applied, Arrows, Load, Size, amid, resultant
+from magshell.model.loads.mass import nodal_masses
 from magshell.model.shell import Shell
 from magshell.units import ACCELERATION, FORCE, Dimension
 from magshell.wording import quantity
@@ -57,13 +57,11 @@ class Gravity(Load):
 
     def applied(self, shell: Shell, normals: FloatArray) -> Applied:
         """The load on a mesh."""
-        if shell.density is None:
-            raise InputError("shell: density is missing; gravity needs it")
         with self.located():
             acceleration = vector("acceleration", self.acceleration)
             members = self.members(shell)
-        masses = shell.density * nodal_volumes(shell, normals, members)
-        return DeadForces(masses[:, None] * acceleration)
+        masses = nodal_masses(shell, normals, members)
+        return DeadForces(*(mass[:, None] * acceleration for mass in masses))
 
     def words(self, shell: Shell, forces: FloatArray) -> str:
         """Acceleration and weight."""

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from magshell.drawing import drawing
 from magshell.linalg import make_solver
 from magshell.magnetics import COUPLINGS, UniformField
-from magshell.materials import MATERIALS, Material, keys_of
 from magshell.mesh import Mesh
 from magshell.model.loads import LOADS, Load
 from magshell.model.model import Model
@@ -19,7 +18,7 @@ from magshell.model.supports import SUPPORTS, Support
 from magshell.problem import schema
 from magshell.problem.building.located import at
 from magshell.problem.building.mesh import build_mesh
-from magshell.problem.building.remanence import build_remanence
+from magshell.problem.building.shell import build_shell
 from magshell.problem.schema import ProblemFile
 from magshell.solver.settings import Settings
 
@@ -81,16 +80,7 @@ def build(file: ProblemFile, source: str, text: str = "", folder: pathlib.Path =
     """
     with at(source):
         mesh = build_mesh(file.mesh, folder)
-        shell = Shell(
-            mesh=mesh,
-            thickness=file.shell.thickness,
-            material=_material(file.material, file.shell),
-            remanence=build_remanence(file.remanence, mesh, folder),
-            element=file.shell.element,
-            thickness_stretch=file.shell.thickness_stretch,
-            micro_rotation=file.shell.micro_rotation,
-            density=file.shell.density,
-        )
+        shell = build_shell(file, mesh, folder)
         field = _field(file.field)
         supports = _supports(file.supports, mesh)
         loads = _loads(file.loads, shell)
@@ -107,16 +97,6 @@ def build(file: ProblemFile, source: str, text: str = "", folder: pathlib.Path =
         settings = Settings(**file.solver.model_dump(exclude_none=True))
         make_solver(settings.linear_solver)
         return Problem(source, file, model, settings, text, folder)
-
-
-def _material(table: schema.MaterialTable, shell: schema.ShellTable) -> Material:
-    law = MATERIALS[table.law]
-    parameters = {key: getattr(table, key) for key in keys_of(law)}
-    if parameters["coupling_modulus"] is None:
-        parameters["coupling_modulus"] = table.shear_modulus / 10.0 if shell.micro_rotation else 0.0
-    if parameters["length_scale"] is None:
-        parameters["length_scale"] = shell.thickness / 10.0 if shell.micro_rotation else 0.0
-    return law(**parameters)
 
 
 def _field(table: schema.FieldTable) -> UniformField:

@@ -14,15 +14,17 @@ from magshell.problem import schema
 from magshell.problem.building.located import at
 
 
-def build_remanence(entries: tuple[schema.RemanenceTable, ...], mesh: Mesh, folder: pathlib.Path) -> Remanence:
-    """The remanence that the entries describe together."""
+def build_remanence(
+    entries: tuple[schema.RemanenceTable, ...], mesh: Mesh, folder: pathlib.Path, key: str = "remanence"
+) -> Remanence:
+    """The remanence that the entries at a key describe together."""
     if len(entries) == 1 and entries[0].group is None:
-        with _at_entry(0):
+        with _at_entry(key, 0):
             return _tried(_one_remanence(entries[0], folder), mesh)
     grouped: dict[str, Remanence] = {}
     owner: dict[int, str] = {}
     for number, entry in enumerate(entries):
-        with at(f"remanence[{number}].group"):
+        with at(f"{key}[{number}].group"):
             if entry.group is None:
                 raise InputError(f"is missing; with several entries each says its element groups {_listed(mesh)}")
             for group in entry.group:
@@ -32,7 +34,7 @@ def build_remanence(entries: tuple[schema.RemanenceTable, ...], mesh: Mesh, fold
                             f"element {element} of '{group}' already has the remanence of '{owner[element]}'"
                         )
                     owner[element] = group
-        with _at_entry(number):
+        with _at_entry(key, number):
             one = _one_remanence(entry, folder)
             grouped |= dict.fromkeys(entry.group, one)
             _tried(by_group(dict.fromkeys(entry.group, one)), mesh)
@@ -40,13 +42,13 @@ def build_remanence(entries: tuple[schema.RemanenceTable, ...], mesh: Mesh, fold
 
 
 @contextmanager
-def _at_entry(number: int) -> Iterator[None]:
+def _at_entry(key: str, number: int) -> Iterator[None]:
     """What the entry is wrong about, located; the words of the remanence itself begin with its name already."""
     try:
         yield
     except InputError as error:
         message = str(error).removeprefix("remanence: ")
-        raise InputError(f"remanence[{number}]{'' if message.startswith('.') else ': '}{message}") from None
+        raise InputError(f"{key}[{number}]{'' if message.startswith('.') else ': '}{message}") from None
 
 
 def _tried(one: Remanence, mesh: Mesh) -> Remanence:

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import Annotated, Any, ClassVar, Union, get_args
 
-from pydantic import BeforeValidator, Field, create_model
+from pydantic import BeforeValidator, Field, create_model, model_validator
 
 from magshell.magnetics.remanence import REMANENCES
 from magshell.materials import MATERIALS, keys_of
@@ -19,9 +19,10 @@ from magshell.model.supports import SUPPORTS
 from magshell.problem import fields as f
 from magshell.problem.schema.described import table_of
 from magshell.problem.schema.loading import FieldTable, LoadTable, SupportTable
-from magshell.problem.schema.material import MaterialTable, ShellTable
+from magshell.problem.schema.material import MaterialTable
 from magshell.problem.schema.mesh import (
     Annulus,
+    Between,
     Block,
     Blocks,
     Cylinder,
@@ -32,23 +33,28 @@ from magshell.problem.schema.mesh import (
     SpherePatch,
     TheMesh,
 )
+from magshell.problem.schema.region import LayerTable, RegionTable, ThicknessFile, ThicknessProfile
 from magshell.problem.schema.remanence import FoldTable, RemanenceTable
+from magshell.problem.schema.shell import ShellTable
 from magshell.problem.schema.solving import SolverTable, StageTable
-from magshell.problem.schema.table import Table
+from magshell.problem.schema.table import Table, key_error
 
 __all__ = [
     "Annulus",
+    "Between",
     "Block",
     "Blocks",
     "Cylinder",
     "FieldTable",
     "FoldTable",
+    "LayerTable",
     "LoadTable",
     "MaterialTable",
     "Mesh",
     "MeshFile",
     "ProblemFile",
     "Rectangle",
+    "RegionTable",
     "RemanenceTable",
     "Selection",
     "ShellTable",
@@ -57,6 +63,8 @@ __all__ = [
     "StageTable",
     "SupportTable",
     "Table",
+    "ThicknessFile",
+    "ThicknessProfile",
     "load_tables",
     "material_tables",
     "problem_file",
@@ -68,13 +76,16 @@ __all__ = [
 class ProblemFile(Table):
     """The whole file; `problem_file` has the tables of all that is registered."""
 
-    # Key that chooses among the kinds of a table, and where in the path of an error pydantic puts the choice.
-    chosen_by: ClassVar[dict[str, tuple[str, int]]] = {
-        "mesh": ("generator", 1),
-        "material": ("law", 1),
-        "remanence": ("kind", 2),
-        "supports": ("kind", 2),
-        "loads": ("kind", 2),
+    # Key that chooses among the kinds of a table, by where the table stands; where there is none, its form chooses.
+    chosen_by: ClassVar[dict[str, str]] = {
+        "mesh": "generator",
+        "supports[]": "kind",
+        "loads[]": "kind",
+        "material": "law",
+        "remanence[]": "kind",
+        **{f"{place}thickness": "" for place in ("shell.", "shell.layers[].", "regions[].", "regions[].layers[].")},
+        **{f"{place}material": "law" for place in ("shell.layers[].", "regions[].", "regions[].layers[].")},
+        **{f"{place}remanence[]": "kind" for place in ("shell.layers[].", "regions[].", "regions[].layers[].")},
     }
 
     # Tables of what is registered, and the whole, by the names of their classes.
@@ -83,8 +94,9 @@ class ProblemFile(Table):
     title: str = ""
     description: str = ""
     mesh: TheMesh
-    shell: ShellTable
-    material: MaterialTable
+    shell: ShellTable = ShellTable()
+    material: MaterialTable | None = None
+    regions: tuple[RegionTable, ...] = ()
     remanence: tuple[RemanenceTable, ...] = ()
     field: FieldTable = FieldTable(flux_density=(0.0, 0.0, 0.0))
     loads: tuple[LoadTable, ...] = ()
@@ -92,6 +104,22 @@ class ProblemFile(Table):
     stages: tuple[StageTable, ...] = ()
     probes: dict[f.ProbeName, f.Position] = {}
     solver: SolverTable = SolverTable()
+
+    @model_validator(mode="after")
+    def _is_made_of_something(self) -> ProblemFile:
+        layers = bool(self.shell.layers)
+        for key in ("material", "remanence"):
+            if layers and getattr(self, key):
+                raise key_error(key, "is given beside shell.layers; each layer has its own")
+        if layers or self.regions:
+            return self
+        if "shell" not in self.model_fields_set:
+            raise key_error("shell", "is missing")
+        if self.shell.thickness is None:
+            raise key_error("shell.thickness", "is missing, and shell.layers as well")
+        if self.material is None:
+            raise key_error("material", "is missing")
+        return self
 
     def files(self) -> list[tuple[str, str]]:
         """Key, as in `remanence[1].file`, and name of every file that the problem names, in the order of the keys."""
@@ -126,14 +154,23 @@ def problem_file() -> type[ProblemFile]:
 @lru_cache(maxsize=1)
 def _problem_file(*registered: tuple[tuple[str, Any], ...]) -> type[ProblemFile]:
     laws, ways, loads, supports = material_tables(), remanence_tables(), load_tables(), support_tables()
+    law, magnetised = _one_of(laws, "law"), _list_of(_one_of(ways, "kind"))
+    layer = create_model("LayerTable", __base__=LayerTable, material=(law, ...), remanence=(magnetised, ()))
+    layers: dict[str, Any] = {"layers": (_list_of(layer), ())}
+    shell = create_model("ShellTable", __base__=ShellTable, **layers)
+    region = create_model(
+        "RegionTable", __base__=RegionTable, material=(law | None, None), remanence=(magnetised | None, None), **layers
+    )
     entries: dict[str, Any] = {
-        "material": (_one_of(laws, "law"), ...),
-        "remanence": (_list_of(_one_of(ways, "kind")), ()),
+        "shell": (shell, shell()),
+        "material": (law | None, None),
+        "regions": (_list_of(region), ()),
+        "remanence": (magnetised, ()),
         "loads": (_list_of(_one_of(loads, "kind")), ()),
         "supports": (Annotated[_list_of(_one_of(supports, "kind")), BeforeValidator(f.not_empty)], ...),
     }
     made = create_model("ProblemFile", __base__=ProblemFile, **entries)
-    tables = (made, *laws.values(), *ways.values(), *loads.values(), *supports.values())
+    tables = (made, shell, region, layer, *laws.values(), *ways.values(), *loads.values(), *supports.values())
     made.classes = {table.__name__: table for table in tables}
     for table in tables:  # pickle finds classes in modules only
         setattr(table, "__reduce__", _pickled)  # noqa: B010

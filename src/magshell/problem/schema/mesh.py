@@ -25,7 +25,22 @@ class Selection(Table):
         return self
 
 
+class Between(Table):
+    """Everything between these coordinates."""
+
+    x1: f.LengthRange | None = None
+    x2: f.LengthRange | None = None
+    x3: f.LengthRange | None = None
+
+    @model_validator(mode="after")
+    def _selects_something(self) -> Between:
+        if self.x1 is None and self.x2 is None and self.x3 is None:
+            raise InputError("selects nothing; give at least one of x1, x2, x3")
+        return self
+
+
 class _Groups(Table):
+    element_groups: dict[f.Name, Between] = {}
     edge_groups: dict[f.Name, Selection] = {}
     node_groups: dict[f.Name, Selection] = {}
 
