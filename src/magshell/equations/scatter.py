@@ -104,7 +104,7 @@ def add_matrices(to: Destination, first: int, K: FloatArray, weight: float, data
             row, places = K[e - first, l], place[node[l]]
             start = to.indptr[to.number[nodes[node[l]], component[l]]]
             column = data[start:]
-            if count == values:
+            if free[count - 1] == count - 1:  # the first values, all of them
                 for k in range(values):
                     column[places[k]] += weight * row[k]
             else:

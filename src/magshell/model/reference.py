@@ -25,7 +25,7 @@ def reference_of_model(model: Model, make: Make) -> Reference:
     shell, elements, rows = model.shell, model.shell.mesh.elements, model.rows
     surface = Surface(
         elements=rows.elements,
-        stretched=np.any(rows.elements >= rows.nodes, axis=1),
+        stretched=rows.elements >= rows.nodes,
         points=shell.mesh.points[elements],
         normals=model.normals[elements],
         element=shell.element,

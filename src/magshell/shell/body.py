@@ -26,8 +26,8 @@ class Surface(NamedTuple):
     ----------
     elements : ndarray, shape (elements, 8)
         Rows of the nodal arrays.
-    stretched : ndarray of bool, shape (elements,)
-        Whether an element has nodes that carry a stretch of the director.
+    stretched : ndarray of bool, shape (elements, 8)
+        Which of its nodes carry a stretch of the director.
     points, normals : ndarray, shape (elements, 8, 3)
         m; unit normals at the nodes.
     element : ElementType

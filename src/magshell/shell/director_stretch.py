@@ -12,10 +12,19 @@ its places (s, w) and (w, s).
 
 from __future__ import annotations
 
-from magshell.arrays import FloatArray, IntArray
+from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.compiled import inline
 from magshell.shell.element import Layout
 from magshell.shell.state import State
+
+
+@inline
+def any_stretched(stretched: AnyArray, layout: Layout) -> bool:
+    """Whether an element has stretched directors; `stretched` (8,)."""
+    count = 0
+    for n in range(layout.s):
+        count += stretched[n]
+    return count > 0
 
 
 @inline
@@ -40,35 +49,48 @@ def stretch_increments(
 
 
 @inline
-def chain_row(nodes: IntArray, normals: FloatArray, state: State, layout: Layout, row: FloatArray) -> None:
+def chain_row(
+    nodes: IntArray, stretched: AnyArray, normals: FloatArray, state: State, layout: Layout, row: FloatArray
+) -> None:
     """From factors or forces of w' in a row to those of w and of s, which stand after ϑ."""
     for n in range(layout.s):
-        along = 0.0
-        for i in range(3):
-            at = layout.at_w + i * layout.w + n
-            along += (normals[n, i] + state.w[nodes[n], i]) * row[at]
-            row[at] *= 1.0 + state.s[nodes[n]]
-        row[layout.nodal + n] = along
+        if stretched[n]:
+            along, w = 0.0, state.w[nodes[n]]
+            for i in range(3):
+                at = layout.at_w + i * layout.w + n
+                along += (normals[n, i] + w[i]) * row[at]
+                row[at] *= 1.0 + state.s[nodes[n]]
+            row[layout.nodal + n] = along
 
 
 @inline
 def chain_matrix(
-    nodes: IntArray, normals: FloatArray, state: State, layout: Layout, r: FloatArray, K: FloatArray
+    nodes: IntArray,
+    stretched: AnyArray,
+    normals: FloatArray,
+    state: State,
+    layout: Layout,
+    r: FloatArray,
+    K: FloatArray,
 ) -> None:
     """From a matrix of w' to one of w and s, which stand after ϑ; r are the forces on w'. (Its transpose likewise.)"""
     nodal = layout.nodal
     for n in range(layout.s):
-        for j in range(nodal):
-            K[nodal + n, j] = 0.0
-        for i in range(3):
-            row, d = K[layout.at_w + i * layout.w + n], normals[n, i] + state.w[nodes[n], i]
+        if stretched[n]:
+            along, s, w = K[nodal + n], state.s[nodes[n]], state.w[nodes[n]]
             for j in range(nodal):
-                K[nodal + n, j] += d * row[j]
-                row[j] *= 1.0 + state.s[nodes[n]]
-    for j in range(nodal + layout.s):
-        chain_row(nodes, normals, state, layout, K[j])
+                along[j] = 0.0
+            for i in range(3):
+                row, d = K[layout.at_w + i * layout.w + n], normals[n, i] + w[i]
+                for j in range(nodal):
+                    along[j] += d * row[j]
+                    row[j] *= 1.0 + s
+    for j in range(nodal):
+        chain_row(nodes, stretched, normals, state, layout, K[j])
     for n in range(layout.s):
-        for i in range(3):
-            at = layout.at_w + i * layout.w + n
-            K[nodal + n, at] += r[at]
-            K[at, nodal + n] += r[at]
+        if stretched[n]:
+            chain_row(nodes, stretched, normals, state, layout, K[nodal + n])
+            for i in range(3):
+                at = layout.at_w + i * layout.w + n
+                K[nodal + n, at] += r[at]
+                K[at, nodal + n] += r[at]

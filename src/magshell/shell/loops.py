@@ -12,7 +12,13 @@ import numpy as np
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.compiled import Kernel, inline
 from magshell.shell.bubble import Hold, hold_vector
-from magshell.shell.director_stretch import chain_matrix, chain_row, stretch_directors, stretch_increments
+from magshell.shell.director_stretch import (
+    any_stretched,
+    chain_matrix,
+    chain_row,
+    stretch_directors,
+    stretch_increments,
+)
 from magshell.shell.element import (
     Layout,
     add_radial_force,
@@ -42,8 +48,8 @@ class Body(NamedTuple):
         Rows of the nodal arrays.
     normals : ndarray, shape (elements, 8, 3)
         Directors of the undeformed shell at the nodes.
-    stretched : ndarray of bool, shape (elements,)
-        Whether an element has nodes that carry a stretch of the director.
+    stretched : ndarray of bool, shape (elements, 8)
+        Which of its nodes carry a stretch of the director.
     layout : Layout
     points : ndarray of POINT, shape (elements, points)
     levels : ndarray of LEVEL, shape (elements, points, levels)
@@ -140,7 +146,7 @@ def fill(
     for e in range(first, min(first + len(out.K), len(body.elements))):
         nodes, Kt, r = body.elements[e], out.K[e - first], out.r[0, e]
         gather(nodes, state, state.alpha[e], layout, v)
-        if body.stretched[e]:
+        if any_stretched(body.stretched[e], layout):
             stretch_directors(nodes, body.normals[e], state, layout, v)
         spin_derivatives(v, layout, T)
         forces[:, :], radial[:] = 0.0, 0.0
@@ -192,14 +198,14 @@ def fill(
                 return e, 0.0
             for l in range(nodal):
                 out.r[1, e, l] = r_sum[l]
-        if body.stretched[e]:
-            normals = body.normals[e]
+        if any_stretched(body.stretched[e], layout):
+            normals, stretched = body.normals[e], body.stretched[e]
             if tangent:
-                chain_matrix(nodes, normals, state, layout, r, Kt)
-                chain_row(nodes, normals, state, layout, out.r[1, e])
+                chain_matrix(nodes, stretched, normals, state, layout, r, Kt)
+                chain_row(nodes, stretched, normals, state, layout, out.r[1, e])
                 for a in range(3 * modes):
-                    chain_row(nodes, normals, state, layout, out.gain[e, a])
-            chain_row(nodes, normals, state, layout, r)
+                    chain_row(nodes, stretched, normals, state, layout, out.gain[e, a])
+            chain_row(nodes, stretched, normals, state, layout, r)
     return -1, 1.0
 
 
@@ -237,7 +243,7 @@ def predict_stresses(
         nodes = body.elements[e]
         gather(nodes, state, state.alpha[e], layout, v)
         _gather_increment(nodes, increment, layout, spins)
-        if body.stretched[e]:
+        if any_stretched(body.stretched[e], layout):
             stretch_directors(nodes, body.normals[e], state, layout, v)
             stretch_increments(nodes, body.normals[e], state, increment, layout, spins)
         for l in range(at):
@@ -268,7 +274,7 @@ def level_stretches(body: Body, state: State, flux_density: FloatArray, zeta: Fl
     w, across = records[0], np.zeros((4, body.levels.shape[2]))
     for e in range(len(body.elements)):
         gather(body.elements[e], state, state.alpha[e], layout, v)
-        if body.stretched[e]:
+        if any_stretched(body.stretched[e], layout):
             stretch_directors(body.elements[e], body.normals[e], state, layout, v)
         for p in range(body.points.shape[1]):
             point = body.points[e, p]
