@@ -105,7 +105,7 @@ def add_matrices(to: Destination, first: int, K: FloatArray, weight: float, data
             start = to.indptr[to.number[nodes[node[l]], component[l]]]
             column = data[start:]
             if free[count - 1] == count - 1:  # the first values, all of them
-                for k in range(values):
+                for k in range(count):
                     column[places[k]] += weight * row[k]
             else:
                 for k in range(count):
