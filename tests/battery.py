@@ -23,6 +23,7 @@ from magshell.evaluation.converged import Converged
 from magshell.magnetics import UniformField, remanence
 from magshell.mesh import Mesh, rectangle, split
 from magshell.model.course import Loading
+from magshell.model.rows import rows_of
 from magshell.model.shell import Shell
 from magshell.model.supports import resolve
 from magshell.shell.elements import ELEMENTS, QUADRATIC
@@ -164,8 +165,12 @@ class Unsupported:
     loads: tuple = ()
 
     @cached_property
+    def rows(self):
+        return rows_of(self.shell)
+
+    @cached_property
     def constraints(self):
-        return resolve(self.shell.mesh, self.supports, self.shell.carriers)
+        return self.rows.constraints(resolve(self.shell.mesh, self.supports, self.shell.carriers))
 
     @cached_property
     def applied(self):
@@ -193,29 +198,37 @@ def free_body(
     supports=(),
     loads=(),
     ordering=lambda graph: np.arange(graph.shape[0]),
+    **made,
 ):
     """Discretisation of a mesh that only `supports` hold; `remanent` is a vector or one vector per element.
 
-    The mesh is `for_element`.
+    The mesh is `for_element`; `made` are further arguments of the shell, with layers in place of what it is made of.
     """
     mesh = for_element(mesh, element)
     vectors = np.broadcast_to(np.asarray(remanent, dtype=float), (len(mesh.elements), 3))
     material, magnets = material or example(MATERIAL), remanence.per_element(vectors)
-    shell = Shell(mesh, thickness, material, magnets, element, stretch)
+    whole = {} if "layers" in made else {"thickness": thickness, "material": material, "remanence": magnets}
+    shell = Shell(mesh, element=element, thickness_stretch=stretch, **whole, **made)
     body = Unsupported(shell, UniformField(field), coupling or example(COUPLING), tuple(supports), tuple(loads))
     return Discretisation(body, ordering)
 
 
 def rest_and_stretch(d):
-    """Nodes that carry director and micro-rotation, and nodes that carry the thickness stretch."""
-    return np.flatnonzero(d.carried[:, 3]), np.flatnonzero(d.carried[:, 6])
+    """Rows that have director and micro-rotation, and rows that have a thickness stretch."""
+    carried = d.rows.shared(d.carried.copy())
+    return np.flatnonzero(carried[:, 3]), np.flatnonzero(carried[:, 6])
+
+
+def places(d):
+    """Points and normals (rows, 3) of the rows."""
+    return d.mesh.points[d.rows.of], d.normals[d.rows.of]
 
 
 def homogeneous(d, F, R):
     """x = F X, d = F D, micro-rotation R everywhere."""
-    state, (rest, _) = d.undeformed(), rest_and_stretch(d)
-    state.u[:] = d.mesh.points @ (F - np.eye(3)).T
-    state.w[rest] = (d.normals @ (F - np.eye(3)).T)[rest]
+    state, (rest, _), (points, normals) = d.undeformed(), rest_and_stretch(d), places(d)
+    state.u[:] = points @ (F - np.eye(3)).T
+    state.w[rest] = (normals @ (F - np.eye(3)).T)[rest]
     state.q[rest] = Rotation.from_matrix(R).as_quat(scalar_first=True)
     return state
 
@@ -224,22 +237,31 @@ def random_state(d, seed, strain=0.1, turn=None):
     """A large rotation (vector `turn`, rad; None: at random) and a random strain field of the size `strain` on it."""
     rng = np.random.default_rng(seed)
     turn = Rotation.random(rng=rng) if turn is None else Rotation.from_rotvec(turn)
-    nodes, (rest, stretch) = len(d.mesh.points), rest_and_stretch(d)
+    nodes, (rest, stretch), (points, normals) = len(d.mesh.points), rest_and_stretch(d), places(d)
+    shared = lambda values: values[d.rows.of]  # noqa: E731
     F = turn.as_matrix() @ (np.eye(3) + rng.uniform(-strain, strain, (3, 3)))
     state = d.undeformed()
-    u = d.mesh.points @ (F - np.eye(3)).T + 0.3 * strain * rng.uniform(-1, 1, (nodes, 3))
-    w, phi, q = state.w.copy(), state.phi.copy(), state.q.copy()
-    w[rest] = (d.normals @ (F - np.eye(3)).T + strain * rng.uniform(-1, 1, (nodes, 3)))[rest]
-    phi[stretch] = strain * rng.uniform(-1, 1, len(stretch)) / d.model.shell.thickness
-    micro = turn * Rotation.from_rotvec(2.0 * strain * rng.uniform(-1, 1, (len(rest), 3)))
-    q[rest] = micro.as_quat(scalar_first=True)
-    return State(u, w, phi, q, strain * rng.uniform(-1, 1, state.alpha.shape))
+    u = points @ (F - np.eye(3)).T + shared(0.3 * strain * rng.uniform(-1, 1, (nodes, 3)))
+    w, phi, q, s = state.w.copy(), state.phi.copy(), state.q.copy(), state.s.copy()
+    w[rest] = (normals @ (F - np.eye(3)).T + shared(strain * rng.uniform(-1, 1, (nodes, 3))))[rest]
+    phi[stretch] = strain * rng.uniform(-1, 1, len(stretch)) / mean_thickness(d)
+    spins = np.zeros((nodes, 3))
+    own = rest[rest < nodes]
+    spins[own] = 2.0 * strain * rng.uniform(-1, 1, (len(own), 3))
+    q[rest] = (turn * Rotation.from_rotvec(shared(spins)[rest])).as_quat(scalar_first=True)
+    s[nodes:] = strain * rng.uniform(-1, 1, len(s) - nodes)
+    return State(u, w, phi, q, s, strain * rng.uniform(-1, 1, state.alpha.shape))
+
+
+def mean_thickness(d):
+    """Of all elements, m."""
+    return float(np.mean(np.concatenate([part.at_points.sum(axis=2).mean(axis=1) for part in d.model.shell.parts])))
 
 
 def random_increment(d, seed, size=0.1):
     """An increment, zero where a node does not carry the field."""
     rng = np.random.default_rng(seed)
-    nodal = size * rng.uniform(-1, 1, d.carried.shape) * d.carried
+    nodal = d.rows.shared(size * rng.uniform(-1, 1, d.carried.shape) * d.carried)
     return Increment(nodal, size * rng.uniform(-1, 1, (len(d.mesh.elements), d.reference.body.layout.modes, 3)))
 
 
@@ -249,7 +271,7 @@ def strain_energy(d, state):
 
 
 def dense(d, matrix):
-    """The matrix on (node, component) pairs, zero where a component is fixed or absent: (10 nodes, 10 nodes)."""
+    """The matrix on (row, component) pairs, zero where a component is fixed or absent: (11 rows, 11 rows)."""
     full = np.zeros((d.free.size, d.free.size))
     at, number = np.flatnonzero(d.free), d.numbering.number[d.free]
     full[np.ix_(at, at)] = matrix.toarray()[np.ix_(number, number)]

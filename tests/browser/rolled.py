@@ -8,7 +8,6 @@ import magshell as ms
 from magshell.equations.discretisation import Discretisation
 from magshell.linalg.ordering import nested_dissection
 from magshell.mesh import Mesh
-from magshell.shell.state import State
 from magshell.solver.path import Path
 from magshell.solver.step import Step
 
@@ -54,7 +53,7 @@ def rolled(mesh: Mesh, steps: int, probe: str = "tip") -> Path:
         u = np.stack([x - s, zero, z], axis=1)
         w = np.stack([-np.sin(angle), zero, np.cos(angle) - 1], axis=1)
         q = np.stack([np.cos(angle / 2), zero, -np.sin(angle / 2), zero], axis=1)
-        state = State(u, w, zero, q, rest.alpha)
+        state = rest._replace(u=u, w=w, q=q)
         field = load * model.field.vector
         path.steps.append(Step(number, load, state, 4, 0.0, None, float(load), 0, field, np.zeros(0), 0))
     return path

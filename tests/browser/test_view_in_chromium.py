@@ -48,7 +48,7 @@ def path() -> Path:
     path = rolled(plate((10, 6)), STEPS, PROBE)
     path.steps[UNSTABLE] = path.steps[UNSTABLE]._replace(negative_pivots=1)
     at = path.steps[CRITICAL]
-    mode = np.zeros((len(at.state.u), 10))
+    mode = np.zeros((len(at.state.u), 11))
     path.critical_points.append(
         CriticalPoint(1, LIMIT_POINT, 0, at.load_factor, at.flux_density, at.arc_length, at.state, mode, (0, 1))
     )

@@ -20,7 +20,7 @@ def rubber(nu: float, thickness: float) -> ms.MicropolarNeoHookean:
 
 
 class Response(NamedTuple):
-    """Change of the nodal values (nodes, 10) per unit load factor at the start, and the work of the loads on it, J."""
+    """Change of the nodal values (nodes, 11) per unit load factor at the start, and the work of the loads on it, J."""
 
     discretisation: Discretisation
     increment: np.ndarray

@@ -150,7 +150,7 @@ LIES = {
     "a long rotation": ({"q": None}, "q of node 0 is not a unit quaternion"),
     "a body far away": ({"u": None}, "u of node 0 is"),
     "another mesh": ({"phi": np.zeros(3)}, r"phi has the shape \(3,\), not"),
-    "a mode": ({"slope_increment": np.zeros((2, 10))}, "slope_increment has the shape"),
+    "a mode": ({"slope_increment": np.zeros((2, 11))}, "slope_increment has the shape"),
     "whole numbers": ({"w": None}, "w has the shape"),
     "critical points": ({"critical_points": 10**6}, "KeyError"),
     "settings": ({"settings": "[" * 10_000}, "RecursionError"),

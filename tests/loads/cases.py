@@ -79,7 +79,7 @@ def crumpled(mesh: Mesh, seed: int) -> State:
     rng, nodes = np.random.default_rng(seed), len(mesh.points)
     turned = Rotation.random(nodes, rng=rng).as_quat(scalar_first=True)
     u, w = rng.uniform(-0.33, 0.33, (2, nodes, 3))
-    return State(u, w, np.zeros(nodes), turned, np.zeros((len(mesh.elements), 0, 3)))
+    return at_rest(mesh)._replace(u=u, w=w, q=turned)
 
 
 def moved(state: State, increment: np.ndarray) -> State:
@@ -105,7 +105,7 @@ def turned_vectors(load: Any, Q: Rotation) -> Any:
 
 
 def turned_columns(nodal: np.ndarray, Q: Rotation) -> np.ndarray:
-    """Nodal columns (nodes, 10) turned; φ is a scalar."""
+    """Nodal columns (nodes, 11) turned; φ is a scalar."""
     turned = nodal.copy()
     for field in ("u", "w", "omega"):
         turned[:, COLUMNS[field]] = nodal[:, COLUMNS[field]] @ Q.as_matrix().T
@@ -113,7 +113,7 @@ def turned_columns(nodal: np.ndarray, Q: Rotation) -> np.ndarray:
 
 
 def product(load: Applied, state: State, increment: np.ndarray) -> np.ndarray:
-    """The load's part of the tangent times an increment (nodes, 10)."""
+    """The load's part of the tangent times an increment (nodes, 11)."""
     result = np.zeros_like(increment)
     if load.pairs is not None:
         rows, columns = (COLUMNS[field] for field in (load.pairs.row_field, load.pairs.column_field))

@@ -25,7 +25,7 @@ def model(*loads, shell=ms.Shell, material=None, **options):
 
 
 def forces(model):
-    """All loads at rest, (nodes, 10)."""
+    """All loads at rest, (nodes, 11)."""
     return sum(applied.forces(at_rest(MESH)) for applied in model.applied)
 
 

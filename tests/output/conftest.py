@@ -18,7 +18,7 @@ from magshell.output import rendering
 
 RADIUS, LENGTH = 10e-3, 16e-3
 PROBES = {"tip": (LENGTH, 0, RADIUS), 'edge, "low"': (LENGTH, RADIUS, 0)}
-NOTHING = Loading(np.zeros(3), np.zeros(0), np.zeros((1, 10)))
+NOTHING = Loading(np.zeros(3), np.zeros(0), np.zeros((1, 11)))
 LOADS = (0.0, 0.1, 0.3, 0.6, 1.0)
 
 
@@ -85,7 +85,7 @@ class FakePath:
             shell=SimpleNamespace(material=MicropolarNeoHookean(135e3, 3.25e6, 13.5e3, 9e-5), thickness=0.9e-3),
             probe_nodes={name: mesh.node_at(position) for name, position in probes.items()},
             course=lambda stage: SimpleNamespace(
-                at=lambda load_factor: Loading(np.zeros(3), np.zeros(0), np.zeros((1, 10)))
+                at=lambda load_factor: Loading(np.zeros(3), np.zeros(0), np.zeros((1, 11)))
             ),
         )
         self.discretisation = FakeDiscretisation(self.model, mesh)

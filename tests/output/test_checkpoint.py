@@ -32,18 +32,18 @@ def waypoint(number: int = 7, plain: bool = False) -> Waypoint:
     def state() -> State:
         return State(
             random(size=(NODES, 3)), random(size=(NODES, 3)), random(size=NODES), random(size=(NODES, 4)),
-            random(size=(ELEMENTS, 4, 3)),
+            random(size=NODES), random(size=(ELEMENTS, 4, 3)),
         )  # fmt: skip
 
     balance = Balance(*(random(size=3) for _ in range(5)), 1e-12, 3e-13, 2.0, 0.1)
     point = CriticalPoint(
-        2, "limit point", 1, random(), random(size=3), random(), state(), random(size=(NODES, 10)), (0, None)
+        2, "limit point", 1, random(), random(size=3), random(), state(), random(size=(NODES, 11)), (0, None)
     )
     step = Step(
         number, random(), state(), 4, 1e-11, None if plain else balance, random(), 1, random(size=3), random(size=2),
         None if plain else 3,
     )  # fmt: skip
-    slope = Slope(Increment(random(size=(NODES, 10)), random(size=(ELEMENTS, 4, 3))), random())
+    slope = Slope(Increment(random(size=(NODES, 11)), random(size=(ELEMENTS, 4, 3))), random())
     return Waypoint(step, () if plain else (point, point), slope, 3, 2, True, random(), 5, 41, 1.25)
 
 
@@ -155,6 +155,25 @@ def test_a_file_without_digest_is_read(file: Path) -> None:
     """As magshell 0.1.0 wrote it."""
     file.write_bytes(other())
     assert same(read_step(file)[0], waypoint())
+
+
+def test_a_file_without_stretches_of_directors_is_read(file: Path) -> None:
+    """As magshell 0.1.0 wrote it: states without s, increments and modes of ten columns."""
+    with np.load(file) as arrays:
+        narrow = {name: arrays[name][:, :10] for name in arrays.files if name.endswith(("increment", "_mode"))}
+        states = [name for name in arrays.files if name == "s" or name.endswith("_s")]
+    assert len(narrow) == len(states) == 3
+    file.write_bytes(other(**narrow, **dict.fromkeys(states)))
+    read, written = read_step(file)[0], waypoint()
+    for state in (read.step.state, *(point.state for point in read.critical_points)):
+        assert state.s.shape == (NODES,)
+        assert not state.s.any()
+    assert np.array_equal(read.step.state.alpha, written.step.state.alpha)
+    mode, increment = read.critical_points[0].mode, read.slope.increment.nodal
+    for wide, columns in ((mode, written.critical_points[0].mode), (increment, written.slope.increment.nodal)):
+        assert np.array_equal(wide[:, :10], columns[:, :10])
+        assert not wide[:, 10:].any()
+        assert wide.shape == (NODES, 11)
 
 
 def test_changed_numbers_are_noticed(file: Path) -> None:

@@ -16,7 +16,7 @@ from magshell.solver.critical import BIFURCATION, LIMIT_POINT, CriticalPoint
 def points(path):
     """A limit point of the first stage and a bifurcation of the second, whose pivots nobody can count."""
     step = path.steps[2]
-    mode = np.random.default_rng(3).normal(size=(len(step.state.u), 10))
+    mode = np.random.default_rng(3).normal(size=(len(step.state.u), 11))
     common = (0.7, np.array([0.0, 1e-3, 2e-3]), 1.25, step.state, mode)
     return [CriticalPoint(1, LIMIT_POINT, 0, *common, (0, 1)), CriticalPoint(2, BIFURCATION, 1, *common, (None, None))]
 
@@ -48,7 +48,7 @@ def test_file_holds_state_and_mode(path, points, written):
     np.testing.assert_array_equal(grid.point_data["displacement"], state.u)
     np.testing.assert_array_equal(grid.point_data["mode"], mode[:, :3])
     np.testing.assert_array_equal(grid.point_data["mode_director"], mode[:, 3:6])
-    np.testing.assert_array_equal(grid.point_data["mode_rotation"], mode[:, 7:])
+    np.testing.assert_array_equal(grid.point_data["mode_rotation"], mode[:, 7:10])
     np.testing.assert_allclose(grid.field_data["flux_density"], [[0.0, 1e-3, 2e-3]])
     assert grid.field_data["stage"] == 2
 

@@ -24,7 +24,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "problem-file.md"
 
 
 def at_rest(model: ms.Model) -> np.ndarray:
-    """Sum of all loads on the undeformed shell, (nodes, 10)."""
+    """Sum of all loads on the undeformed shell, (nodes, 11)."""
     mesh = model.shell.mesh
     state = State.undeformed(len(mesh.points), len(mesh.elements), model.shell.element.vectors)
     return np.sum([applied.forces(state) for applied in model.applied], axis=0)

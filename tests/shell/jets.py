@@ -90,6 +90,15 @@ def variables(values):
     return jets.reshape(values.shape)
 
 
+def constants(values, count):
+    """The values (any shape) as numbers that do not depend on any of `count` variables."""
+    values = np.asarray(values, dtype=float)
+    jets = np.empty(values.size, dtype=object)
+    for i, value in enumerate(values.ravel()):
+        jets[i] = Jet(value, np.zeros(count), np.zeros((count, count)))
+    return jets.reshape(values.shape)
+
+
 def _part(jets, name):
     jets = np.asarray(jets, dtype=object)
     parts = np.array([getattr(jet, name) for jet in jets.ravel()])

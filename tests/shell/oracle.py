@@ -1,9 +1,7 @@
-"""The shell written from the paper's formulas, in jets: first and second derivatives come without further algebra.
+"""The element written from the paper's formulas, in jets: first and second derivatives come without further algebra.
 
-The point: F = (F0 + ā ⊗ A³ + z F1) Q⁻¹ with the surface's own dual base and shifter, U = R̃ᵀF, the wryness as the axial
-vectors of R̃ᵀR̃,α with R̃,α the derivative of the rotation *matrix*. The element: interpolation, spins and enhanced
-parameters. Nothing of this is shared with the package but the order of the nodes. A point's x is a dict of named parts
-(`kernel_access.unpack`).
+Interpolation, stretched directors, spins and enhanced parameters; the point is `point_oracle`. Nothing of this is
+shared with the package but the order of the nodes.
 """
 
 from __future__ import annotations
@@ -11,122 +9,27 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from magnetics import reference as coupling_reference
 from materials import reference as material_reference
 
 from shell import jets
+from shell.point_oracle import (
+    Section,
+    axial,
+    deformation_gradients,
+    eliminated,
+    flat,
+    make_point,
+    rotation,
+    sheared_by,
+    skew,
+    wryness_vectors,
+)
 
+__all__ = ["axial", "deformation_gradients", "make_point", "rotation", "skew", "wryness_vectors"]
 
-class Point(NamedTuple):
-    """The undeformed shell at a point, and what acts on it; k counts levels through the thickness."""
-
-    A: np.ndarray
-    D: np.ndarray
-    dD: np.ndarray
-    dual: np.ndarray
-    z: np.ndarray
-    Q_inverse: np.ndarray
-    volume: np.ndarray
-    remanence: np.ndarray
-    B: np.ndarray
-
-
-def make_point(A, D, dD, weight, thickness, remanence, B):
-    """Dual base of (A_1, A_2, D), shifter Q = I - z B with B = -D,α ⊗ A^α, two Gauss points through the thickness."""
-    covariant = np.stack([A[0], A[1], D], axis=1)
-    dual = np.linalg.inv(covariant)
-    z = 0.5 * thickness * np.array([-1.0, 1.0]) / np.sqrt(3.0)
-    Q = np.eye(3) + z[:, None, None] * np.einsum("ai,aj->ij", dD, dual[:2])
-    volume = weight * 0.5 * thickness * np.linalg.det(covariant) * np.linalg.det(Q)
-    return Point(A, D, dD, dual, z, np.linalg.inv(Q), volume, np.asarray(remanence), np.asarray(B))
-
-
-def skew(v):
-    """[v]×, with [v]× a = v × a."""
-    return np.array([[0.0 * v[0], -v[2], v[1]], [v[2], 0.0 * v[0], -v[0]], [-v[1], v[0], 0.0 * v[0]]])
-
-
-def axial(S):
-    """axial([v]×) = v, of matrices (3, 3, …)."""
-    return 0.5 * np.array([S[2, 1] - S[1, 2], S[0, 2] - S[2, 0], S[1, 0] - S[0, 1]])
-
-
-def _rotation_form(p, q):
-    """Symmetric bilinear matrix M(p, q) with M(q, q) = |q|² R(q), Rodrigues' formula in half angles."""
-    v, w = p[1:], q[1:]
-    return (
-        (p[0] * q[0] - v @ w) * np.eye(3) + np.outer(v, w) + np.outer(w, v) + p[0] * skew(w) + q[0] * skew(v)
-    )  # fmt: skip
-
-
-def rotation(q):
-    """Rotation matrix; q need not be a unit quaternion."""
-    return _rotation_form(q, q) / (q @ q)
-
-
-def rotation_along(q, dq):
-    """Derivative of the rotation matrix along dq, by the quotient rule."""
-    return 2.0 * (_rotation_form(q, dq) - (q @ dq) * rotation(q)) / (q @ q)
-
-
-def deformation_gradients(f, point):
-    """Eqs bfF2, F0F1_1 at each level, with the enhancement added to F0; f are the parts of x."""
-    dual, d = point.dual, point.D + f["w"]
-    F0 = (point.A + f["du"]).T @ dual[:2] + np.outer(d + f["enhanced"], dual[2])
-    F1 = (point.dD + f["dw"]).T @ dual[:2] + 2.0 * f["phi"] * np.outer(d, dual[2])
-    return [(F0 + z * F1) @ Q_inverse for z, Q_inverse in zip(point.z, point.Q_inverse, strict=True)]
-
-
-def wryness_vectors(f):
-    """axial(R̃ᵀ R̃,α), rows of (2, 3)."""
-    R = rotation(f["q"])
-    return np.array([axial(R.T @ rotation_along(f["q"], dq)) for dq in f["dq"]])
-
-
-def strain_energy(material, f, point):
-    """Sum over the thickness of W(U) + mu l²/2 tr(Γ Γᵀ)."""
-    R, κ = rotation(f["q"]), wryness_vectors(f)
-    energy, total = material_reference.ENERGIES[type(material)], 0.0
-    for F, volume, Q_inverse in zip(deformation_gradients(f, point), point.volume, point.Q_inverse, strict=True):
-        Γ = κ.T @ point.dual[:2] @ Q_inverse
-        couple = 0.5 * material.shear_modulus * material.length_scale**2 * np.sum(Γ * Γ)
-        total = total + volume * (energy(material, R.T @ F) + couple)
-    return total
-
-
-def magnetic_work(coupling, f, point):
-    """Covector of the magnetic work and its Jacobian with respect to the variables of the jets.
-
-    Of the energy where the law has one; else of f · δm + c · δω with δω the axial vector of δR̃ R̃ᵀ.
-    """
-    law, R = type(coupling), rotation(f["q"])
-    m, n = [F @ point.remanence for F in deformation_gradients(f, point)], R @ point.remanence
-    if law in coupling_reference.ENERGIES:
-        energy = sum(
-            volume * coupling_reference.ENERGIES[law](coupling, m_k, n, point.B)
-            for volume, m_k in zip(point.volume, m, strict=True)
-        )
-        return energy.gradient, energy.hessian
-    R_0, R_1, R_2 = jets.value(R), jets.gradient(R), jets.hessian(R)
-    spin = axial(np.einsum("ija,kj->ika", R_1, R_0))
-    d_spin = axial(np.einsum("ijab,kj->ikab", R_2, R_0) + np.einsum("ija,kjb->ikab", R_1, R_1))
-    g, H = 0.0, 0.0
-    for volume, m_k in zip(point.volume, m, strict=True):
-        force, couple = coupling_reference.FORCES[law](coupling, m_k, n, point.B)
-        g = g + volume * (jets.value(force) @ jets.gradient(m_k) + jets.value(couple) @ spin)
-        H = H + volume * (
-            np.einsum("ka,kb->ab", jets.gradient(m_k), jets.gradient(force))
-            + np.einsum("k,kab->ab", jets.value(force), jets.hessian(m_k))
-            + np.einsum("ka,kb->ab", spin, jets.gradient(couple))
-            + np.einsum("k,kab->ab", jets.value(couple), d_spin)
-        )
-    return g, H
-
-
-# -- the element -----------------------------------------------------------------------------------------------------
-
-NODAL = 80
-"""An element's variables: u, w, φ, spin of each of its eight nodes (ten each, some unused), then α (modes, 3)."""
+COLUMNS = 11
+NODAL = 8 * COLUMNS
+"""An element's variables: u, w, φ, spin, s of each of its eight nodes (some unused), then α (modes, 3)."""
 
 
 def four(parent):
@@ -277,14 +180,17 @@ def bubble_energy(d, state, e, at):
 
     Where there are triangles the vector before it too, on a triangle by the tangents only.
 
-    mu h A/2 A^αβ (α·a_α)(α·a_β) + c mu h³/2 α·α with the area A of the parallelogram over the centre's tangents. In the
-    dual base of the centre the first is mu h A/2 |A^α (α·a_α)|².
+    mu h A/2 A^αβ (α·a_α)(α·a_β) + c mu h³/2 α·α with the area A of the parallelogram over the centre's tangents, mean
+    thickness h and the mean mu of its layers. In the dual base of the centre the first is mu h A/2 |A^α (α·a_α)|².
     """
     shell, nodes = d.model.shell, d.mesh.elements[e]
-    mu, h = shell.material.shear_modulus, shell.thickness
+    part, place = part_of(d, e)
+    heights = part.at_points[place].mean(axis=0)
+    h = heights.sum()
+    mu = sum(layer.material.shear_modulus * own for layer, own in zip(part.layers, heights, strict=True)) / h
     tangents = lambda x: 0.5 * np.array([x[5] - x[7], x[6] - x[4]])  # noqa: E731
     A = tangents(d.mesh.points[nodes])
-    a = tangents(d.mesh.points[nodes] + state.u[nodes] + at[:NODAL].reshape(8, 10)[:, :3])
+    a = tangents(d.mesh.points[nodes] + state.u[nodes] + at[:NODAL].reshape(8, COLUMNS)[:, :3])
     area, total = 4.0 * np.linalg.norm(np.cross(*A)), 0.0
     for number in range(1 + (shell.element.triangle_rule is not None)):
         alpha = (state.alpha[e] + at[NODAL:].reshape(-1, 3))[-1 - number]
@@ -307,18 +213,25 @@ def unknowns(d):
 
 
 def element_parts(d, state, e, parent, at):
-    """Parts of x at a parent point, jets of the element's variables, and the surface there."""
-    element, nodes = d.model.shell.element, d.mesh.elements[e]
-    rest, stretch = nodes[: element.rest_nodes], nodes[: element.stretch_nodes]
+    """Parts of x at a parent point, jets of the element's variables, and the surface there.
+
+    A row that is not the first of its node sees the director (1 + s)(D + w).
+    """
+    element, rows = d.model.shell.element, d.rows.elements[e]
+    rest, stretch = rows[: element.rest_nodes], rows[: element.stretch_nodes]
     here, centre = surface(d, e, parent), surface(d, e, np.zeros(2))
-    nodal = at[:NODAL].reshape(8, 10)
-    u, w = state.u[nodes] + nodal[:, :3], state.w[rest] + nodal[: len(rest), 3:6]
+    nodal = at[:NODAL].reshape(8, COLUMNS)
+    u, w = state.u[rows] + nodal[:, :3], state.w[rest] + nodal[: len(rest), 3:6]
+    normals = d.normals[d.mesh.elements[e][: element.rest_nodes]]
+    for n, row in enumerate(rest):
+        if row >= len(d.mesh.points):
+            w[n] = (1.0 + state.s[row] + nodal[n, 10]) * (normals[n] + w[n]) - normals[n]
     phi = state.phi[stretch] + nodal[: len(stretch), 6]
-    q = np.array([turned(nodal[n, 7:], state.q[rest[n]]) for n in range(len(rest))])
+    q = np.array([turned(nodal[n, 7:10], state.q[rest[n]]) for n in range(len(rest))])
     w_here, q_here = here.director @ w, here.rotation @ q
-    enhanced = np.zeros((3, 3))
+    enhanced = 0.0 * at[:9].reshape(3, 3)
     if element.vectors:
-        enhanced = enhancements(element, d.mesh.points[nodes], parent, here, centre) @ (
+        enhanced = enhancements(element, d.mesh.points[d.mesh.elements[e]], parent, here, centre) @ (
             state.alpha[e] + at[NODAL:].reshape(-1, 3)
         )
     parts = {
@@ -333,42 +246,63 @@ def element_parts(d, state, e, parent, at):
     return parts, here
 
 
-def point_of(d, here, e, weight, B):
-    """The point of a surface; the remanence of the battery's bodies is constant within an element."""
-    return make_point(here.A, here.D, here.dD, weight, d.model.shell.thickness, d.reference.remanence[e, 0, 0], B)
+def part_of(d, e):
+    """The part of the shell that holds an element, and its place there."""
+    return next(
+        (part, int(np.flatnonzero(part.elements == e)[0])) for part in d.model.shell.parts if e in part.elements
+    )
 
 
-def element(d, state, e, B):
-    """Strain energy, residual (n,), tangent (n, n) before condensation, in the chart exp(ϑ/2) q about the state."""
+def section_of(d, e, p):
+    """Levels of every layer from the bottom to the top; the shares of transverse shear are the package's."""
+    part, place = part_of(d, e)
+    layers, by_level = part.at_points[place, p], part.layered or d.model.shell.thickness_stretch == "plane-stress"
+    at, weights = np.polynomial.legendre.leggauss(part.levels)
+    z, heights, bottom = [], [], -0.5 * layers.sum() - part.offset_at_points[place, p]
+    for thickness in layers:
+        z.append(bottom + 0.5 * thickness * (1.0 + at))
+        heights.append(0.5 * thickness * weights)
+        bottom += thickness
+    warping = d.reference.body.levels["warping"][e, p, : len(layers) * part.levels]
+    return Section(
+        np.concatenate(z), np.concatenate(heights), np.repeat(part.remanence[place, p], part.levels, axis=0),
+        [layer.material for layer in part.layers for _ in range(part.levels)], warping, by_level,
+    )  # fmt: skip
+
+
+def point_of(d, here, e, p, weight, B):
+    """The point p of a surface with its section."""
+    return make_point(here.A, here.D, here.dD, weight, section_of(d, e, p), B)
+
+
+def element(d, state, e, B, given=None):
+    """Strain energy, residual (n,), tangent (n, n) before condensation, in the chart exp(ϑ/2) q about the state.
+
+    With `given`, ΔS (points, levels, 3, 3) and Δκ (points, 2, 3), the tangent is that of W + ½ ΔS : UᵀU + mu l² Δκ · κ.
+    """
     size = unknowns(d)
     strain, r, K = 0.0, np.zeros(size), np.zeros((size, size))
-    for parent, weight in points(d, e):
+    for p, (parent, weight) in enumerate(points(d, e)):
         f, here = element_parts(d, state, e, parent, jets.variables(np.zeros(size)))
-        point = point_of(d, here, e, weight, B)
-        energy, (g, H) = strain_energy(d.model.shell.material, f, point), magnetic_work(d.model.coupling, f, point)
-        strain += energy.value
-        r += energy.gradient + g
-        K += energy.hessian + H
+        values = {name: jets.value(part) for name, part in f.items()}
+        extra = None if given is None else (given[0][p], given[1][p])
+        local = eliminated(values, d.model.coupling, point_of(d, here, e, p, weight, B), extra)
+        x = flat(f)
+        J = jets.gradient(x)
+        strain += local.energy
+        r += J.T @ (local.internal + local.magnetic)
+        K += J.T @ local.hessian @ J + np.einsum("i,iab->ab", local.geometric, jets.hessian(x))
     if d.model.shell.element.bubble:
         held = bubble_energy(d, state, e, jets.variables(np.zeros(size)))
         strain, r, K = strain + held.value, r + held.gradient, K + held.hessian
     return strain, r, K
 
 
-def stress_energy(d, state, e, dS, dκ):
-    """½ ΔS : UᵀU + mu l² Δκ · κ of an element with fixed ΔS (points, levels, 3, 3) and Δκ (points, 2, 3)."""
-    material = d.model.shell.material
-    modulus, total = material.shear_modulus * material.length_scale**2, 0.0
-    for p, (parent, weight) in enumerate(points(d, e)):
-        f, here = element_parts(d, state, e, parent, jets.variables(np.zeros(unknowns(d))))
-        point = point_of(d, here, e, weight, np.zeros(3))
-        R, κ = rotation(f["q"]), wryness_vectors(f)
-        levels = zip(deformation_gradients(f, point), point.volume, point.Q_inverse, dS[p], strict=True)
-        for F, volume, Q_inverse, extra in levels:
-            U, legs = R.T @ F, point.dual[:2] @ Q_inverse
-            total = total + volume * 0.5 * np.sum(extra * (U.T @ U))
-            total = total + volume * modulus * np.sum((dκ[p].T @ legs) * (κ.T @ legs))
-    return total
+def where(d, e):
+    """Places (NODAL,) of an element's nodal variables among the body's (row, component) pairs, what is shared once."""
+    rows, columns = d.rows.elements[e][:, None], np.arange(COLUMNS)
+    own = (columns == 6) | (columns == 10)
+    return (COLUMNS * np.where(own, rows, d.rows.of[rows]) + columns).ravel()
 
 
 def condensed(d, r, K):
@@ -378,22 +312,28 @@ def condensed(d, r, K):
     return r[v] - K[v, a] @ solved[:, 0], K[v, v] - K[v, a] @ solved[:, 1:], solved[:, 0], solved[:, 1:]
 
 
-def stresses(d, state, e, variation):
+def stresses(d, state, e, B, variation):
     """S = U⁻¹ P (points, levels, 3, 3) and κ (points, 2, 3) of an element, and derivatives along a variation (n,)."""
-    material = d.model.shell.material
-    energy = material_reference.ENERGIES[type(material)]
     S, dS, κ, dκ = [], [], [], []
-    for parent, weight in points(d, e):
+    for p, (parent, weight) in enumerate(points(d, e)):
         f, here = element_parts(d, state, e, parent, jets.variables(np.zeros(unknowns(d))))
-        for F in deformation_gradients(f, point_of(d, here, e, weight, np.zeros(3))):
+        point = point_of(d, here, e, p, weight, B)
+        values = {name: jets.value(part) for name, part in f.items()}
+        local = eliminated(values, d.model.coupling, point)
+        dx = jets.gradient(flat(f)) @ variation
+        along = np.concatenate([dx, local.slope @ dx])
+        f = local.parts
+        for k, F in enumerate(deformation_gradients(f, point)):
             U = rotation(f["q"]).T @ F
-            W = energy(material, jets.variables(jets.value(U)))
-            dU = jets.gradient(U) @ variation
+            energy = material_reference.ENERGIES[type(point.section.materials[k])]
+            level = jets.variables(jets.value(U))
+            W = energy(point.section.materials[k], sheared_by(point.section.warping[k], level, point.D))
+            dU = jets.gradient(U) @ along
             S.append(np.linalg.solve(jets.value(U), W.gradient.reshape(3, 3)))
             dP = (W.hessian @ dU.ravel()).reshape(3, 3)
             dS.append(np.linalg.solve(jets.value(U), dP - dU @ S[-1]))
         vectors = wryness_vectors(f)
         κ.append(jets.value(vectors))
-        dκ.append(jets.gradient(vectors) @ variation)
+        dκ.append(jets.gradient(vectors) @ along)
     shape = (len(points(d, e)), -1, 3, 3)
     return np.reshape(S, shape), np.array(κ), np.reshape(dS, shape), np.array(dκ)

@@ -62,7 +62,8 @@ def left_by(call, times=3):
 def calls(d):
     """Every use of a kernel, by name."""
     state, loading = random_state(d, 1, strain=1e-3), d.model.loading(0.1)
-    prediction, increment = d.predicted(state), random_increment(d, 1, 1e-3)
+    instant = Instant(state, loading)
+    prediction, increment = d.predicted(instant), random_increment(d, 1, 1e-3)
     inside_out = d.undeformed()._replace(w=-2.0 * d.normals)
 
     def inverted():
@@ -70,8 +71,8 @@ def calls(d):
             d.assemble(Instant(inside_out, loading))
 
     predicted = {
-        "predicted stresses": lambda: d.predicted(state, increment),
-        "stresses of a state": lambda: d.predicted(state),
+        "predicted stresses": lambda: d.predicted(instant, increment),
+        "stresses of a state": lambda: d.predicted(instant),
     }
     return {
         "residual": lambda: d.assemble(Instant(state, loading), tangent=False),

@@ -420,7 +420,7 @@ def test_kernels_are_compiled_once_for_all_elements():
         for stretch in ("linear", "none", "plane-stress"):
             d = free_body(patch((2, 2)), element=element, stretch=stretch)
             state = d.undeformed()
-            for prediction in (None, d.predicted(state)):
+            for prediction in (None, d.predicted(Instant(state, d.model.loading(1.0)))):
                 d.assemble(Instant(state, d.model.loading(1.0), prediction))
     assert [len(kernel._compiled.signatures) for kernel in (loops.fill, scatter.add_matrices)] == [1, 1]
 

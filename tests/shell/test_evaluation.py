@@ -20,7 +20,7 @@ def test_deformation_gradient_rotation_and_wryness(element):
     for e in range(len(d.mesh.elements)):
         for p, (parent, weight) in enumerate(oracle.points(d, e)):
             f, here = oracle.element_parts(d, state, e, parent, still)
-            point = oracle.point_of(d, here, e, weight, np.zeros(3))
+            point = oracle.point_of(d, here, e, p, weight, np.zeros(3))
             errors = {
                 "F": np.abs(fields.F[e, p] - [jets.value(F) for F in oracle.deformation_gradients(f, point)]).max(),
                 "R": np.abs(fields.R[e, p] - jets.value(oracle.rotation(f["q"]))).max(),

@@ -9,6 +9,7 @@ from battery import PATCHES, SINGLES, THICKNESS, each_element, each_mesh, free_b
 from magshell.errors import InputError
 from magshell.mesh import cylinder, sphere_patch
 from shell import oracle
+from shell.point_oracle import two_levels
 
 
 @each_element
@@ -20,14 +21,15 @@ def test_base_vectors_and_shifter(mesh, element):
     for e in range(len(d.mesh.elements)):
         for p, (parent, weight) in enumerate(oracle.points(d, e)):
             here = oracle.surface(d, e, parent)
-            point = oracle.make_point(here.A, here.D, here.dD, weight, THICKNESS, np.zeros(3), np.zeros(3))
+            section = two_levels(THICKNESS, np.zeros(3), None)
+            point = oracle.make_point(here.A, here.D, here.dD, weight, section, np.zeros(3))
             G = np.einsum("ai,kij->kaj", point.dual, point.Q_inverse)
             metric = couple_modulus * np.einsum("k,kai,kbi->ab", point.volume, G[:, :2], G[:, :2])
             for actual, expected, size in (
                 (geometry.A[e, p], here.A, 1.0),
                 (geometry.D[e, p], here.D, 1.0),
                 (geometry.dD[e, p], here.dD, 1.0),
-                (geometry.z[e, p], point.z, THICKNESS),
+                (geometry.z[e, p], section.z, THICKNESS),
                 (geometry.G[e, p], G, np.abs(G).max()),
                 (geometry.volume[e, p], point.volume, point.volume.max()),
                 (d.reference.body.points["couple_metric"][e, p], metric, np.abs(metric).max()),

@@ -12,6 +12,7 @@ from battery import (
     each_combination,
     each_element,
     free_body,
+    places,
     random_state,
     rest_and_stretch,
     scaled_error,
@@ -22,7 +23,6 @@ from scipy.spatial.transform import Rotation
 
 from magshell.equations.instant import Instant
 from magshell.shell import rotation
-from magshell.shell.state import State
 
 AXIS = np.array([0.48, -0.6, 0.64])
 ANGLES = [1e-3, 90.0, 180.0, 250.0, 359.0, 500.0]
@@ -39,13 +39,14 @@ def superposed(d, state, Q, q):
     """The deformed body turned by Q: x → Q x, d → Q d, R̃ → Q R̃, ā → Q ā."""
     rest, _ = rest_and_stretch(d)
     w, turned = state.w.copy(), state.q.copy()
-    w[rest] = ((d.normals + state.w) @ Q.T - d.normals)[rest]
+    points, normals = places(d)
+    w[rest] = ((normals + state.w) @ Q.T - normals)[rest]
     turned[rest] = rotation.product(np.broadcast_to(q, state.q.shape), state.q)[rest]
-    return State((d.mesh.points + state.u) @ Q.T - d.mesh.points, w, state.phi, turned, state.alpha @ Q.T)
+    return state._replace(u=(points + state.u) @ Q.T - points, w=w, q=turned, alpha=state.alpha @ Q.T)
 
 
 def turned_rows(nodal, Q):
-    """Vectors of (nodes, 10) turned by Q."""
+    """Vectors of (nodes, 11) turned by Q."""
     result = nodal.copy()
     for columns in (slice(0, 3), slice(3, 6), slice(7, 10)):
         result[:, columns] = nodal[:, columns] @ Q.T
@@ -54,10 +55,10 @@ def turned_rows(nodal, Q):
 
 def turned_matrix(K, Q):
     """T K Tᵀ on (node, component) pairs."""
-    block = np.eye(10)
+    block = np.eye(11)
     for at in (0, 3, 7):
         block[at : at + 3, at : at + 3] = Q
-    T = np.kron(np.eye(len(K) // 10), block)
+    T = np.kron(np.eye(len(K) // 11), block)
     return T @ K @ T.T
 
 
@@ -113,7 +114,7 @@ def test_whole_problem_turned(element, material, coupling, angle):
     d_turned = free_body(there, material, coupling, element=element, remanent=Q @ REMANENCE, field=Q @ FIELD)
     state = random_state(d, 13)
     micro = rotation.product(rotation.product(np.broadcast_to(q, state.q.shape), state.q), rotation.conjugate(q))
-    moved = State(state.u @ Q.T, state.w @ Q.T, state.phi, micro, state.alpha @ Q.T)
+    moved = state._replace(u=state.u @ Q.T, w=state.w @ Q.T, q=micro, alpha=state.alpha @ Q.T)
     first, second = (
         d.assemble(Instant(state, d.model.loading(1.0))),
         d_turned.assemble(Instant(moved, d_turned.model.loading(1.0))),

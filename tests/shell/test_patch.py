@@ -68,10 +68,10 @@ def nodal_volumes(d):
 
 
 def loads(d, P, F):
-    """Internal forces (nodes, 10) of a constant stress P with the deformation gradient F, inside the patch."""
+    """Internal forces (nodes, 11) of a constant stress P with the deformation gradient F, inside the patch."""
     result = np.zeros(d.free.shape)
     result[:, 3:6] = P[:, 2]
-    result[:, 7:] = -np.cross(F.T, P.T).sum(axis=0)
+    result[:, 7:10] = -np.cross(F.T, P.T).sum(axis=0)
     return result * nodal_volumes(d)[:, None]
 
 
@@ -141,7 +141,7 @@ def check_equilibrium(d, seed):
 
 
 def solve_inside(d, exact, force):
-    """Values (nodes, 10) with those of the boundary given and the loads `force` inside."""
+    """Values (nodes, 11) with those of the boundary given and the loads `force` inside."""
     K = dense(d, d.assemble(Instant(d.undeformed(), d.model.loading(0.0))).matrix)
     inside = np.zeros(d.free.shape, dtype=bool)
     inside[inner_nodes(d.mesh)] = True
@@ -186,7 +186,7 @@ def test_constant_strain(gradient, spin, element):
     exact = np.zeros(d.free.shape)
     exact[:, :3] = d.mesh.points @ H.T
     rest, _ = rest_and_stretch(d)
-    exact[rest, 3:6], exact[rest, 7:] = H[:, 2], spin
+    exact[rest, 3:6], exact[rest, 7:10] = H[:, 2], spin
     e = H - np.cross(np.eye(3), spin)
     P = lam * np.trace(e) * np.eye(3) + mu * (e + e.T) + eta * (e - e.T)
     error = inside_error(d, exact, loads(d, P, np.eye(3)))

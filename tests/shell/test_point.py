@@ -6,7 +6,7 @@ import numpy as np
 from battery import FIELD, SINGLES, each_pair, free_body, scaled_error
 from scipy.spatial.transform import Rotation
 
-from shell import jets, oracle
+from shell import jets, oracle, point_oracle
 from shell.kernel_access import energy_gradient_and_hessian, pack, unpack
 
 TOLERANCE = 1e-9
@@ -37,10 +37,9 @@ def random_point(d, seed):
 def the_point(d, B):
     """Point 0 of element 0 for the oracle, from the discretisation's own mid-surface."""
     geometry, shell = d.reference.geometry, d.model.shell
-    return oracle.make_point(
-        geometry.A[0, 0], geometry.D[0, 0], geometry.dD[0, 0], shell.element.rule.weights[0], shell.thickness,
-        d.reference.remanence[0, 0, 0], np.array(B),
-    )  # fmt: skip
+    section = point_oracle.two_levels(shell.thickness, d.reference.remanence[0, 0, 0], shell.material)
+    weight = shell.element.rule.weights[0]
+    return oracle.make_point(geometry.A[0, 0], geometry.D[0, 0], geometry.dD[0, 0], weight, section, np.array(B))
 
 
 @each_pair
@@ -51,8 +50,8 @@ def test_gradient_and_hessian(material, coupling):
         energies, g, H = energy_gradient_and_hessian(d, 0, 0, x, FIELD)
         f = unpack(jets.variables(x))
         energy, (magnetic, H_magnetic) = (
-            oracle.strain_energy(material, f, point),
-            oracle.magnetic_work(coupling, f, point),
+            point_oracle.strain_energy(f, point),
+            point_oracle.magnetic_work(coupling, f, point),
         )
         errors = {
             "energy": abs(energies[0] / energy.value - 1.0),

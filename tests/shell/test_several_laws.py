@@ -31,10 +31,10 @@ from magshell.magnetics import DeformationGradientEnergy, MicroRotationEnergy
 from magshell.magnetics import law as coupling_laws
 from magshell.magnetics.law import OMEGA, M, coupling_law
 from magshell.materials import MicropolarMooneyRivlin, MicropolarStVenantKirchhoff
-from magshell.model.reference import make_of
-from magshell.shell.body import Surface, of_elements, reference_of
+from magshell.model.reference import make_of, stiffest_of
+from magshell.shell.body import Surface, reference_of
 from magshell.shell.geometry import Sections
-from shell import jets, oracle
+from shell import jets, oracle, point_oracle
 from shell.kernel_access import energy_gradient_and_hessian, unpack
 from shell.test_element import TOLERANCE, reference
 from shell.test_point import random_point, the_point
@@ -45,16 +45,20 @@ COUPLINGS = [example(COUPLING), example(DeformationGradientEnergy), MicroRotatio
 
 def evaluated(d, make, state, elements=slice(None)):
     """Residuals, dense tangent and energies of some elements of a body, made as told."""
-    nodes, shell = d.mesh.elements[elements], d.model.shell
-    surface = Surface(nodes, d.mesh.points[nodes], d.normals[nodes], shell.element, shell.micro_rotation)
-    stiffest = 2.0 * of_elements(make, "shear_modulus") + of_elements(make, "lame_lambda")
-    term = ShellTerm(reference_of(surface, make), len(d.mesh.points), stiffest)
-    numbering = Numbering(d.free, d.shell.couplings(), lambda graph: np.arange(graph.shape[0]))
+    term = ShellTerm(reference_of(surface_of(d, elements), make), len(d.mesh.points), stiffest_of(make))
+    numbering = Numbering(d.rows, d.free, d.shell.couplings(), lambda graph: np.arange(graph.shape[0]))
     insertion = Insertion(numbering, d.model.constraints)
     term.place(numbering, d.model.constraints)
     instant = Instant(state._replace(alpha=state.alpha[elements]), d.model.loading(1.0))
     part = term.evaluate(instant, STATIC, insertion, None)
     return part.residual, part.condensed, insertion.matrix.toarray(), term.energy(instant)
+
+
+def surface_of(d, elements=slice(None)):
+    """The mid-surface of some elements of a body without regions."""
+    nodes, shell = d.mesh.elements[elements], d.model.shell
+    stretched = np.zeros(len(nodes), dtype=bool)
+    return Surface(nodes, stretched, d.mesh.points[nodes], d.normals[nodes], shell.element, shell.micro_rotation)
 
 
 def of_element(d, make, e):
@@ -63,7 +67,10 @@ def of_element(d, make, e):
     return make._replace(
         thickness=make.thickness[e : e + 1],
         sections=Sections(make.sections.z[e : e + 1], make.sections.heights[e : e + 1]),
-        remanence=make.remanence[e : e + 1, :1],
+        levels=make.levels[e : e + 1],
+        by_level=make.by_level[e : e + 1],
+        warping=make.warping[e : e + 1],
+        remanence=make.remanence[e : e + 1],
         materials=[material],
         couplings=[coupling],
         material_of=np.zeros((1, make.material_of.shape[1]), dtype=np.int64),
@@ -77,11 +84,14 @@ def mixed(d, levels=2):
     numbers, rng = np.arange(count), np.random.default_rng(5)
     thickness = 0.1 + 0.02 * numbers
     parent, weights = np.polynomial.legendre.leggauss(levels)
-    half = 0.5 * thickness[:, None]
-    remanence = rng.uniform(-1, 1, (count, 1, 1, 3)) * np.ones((*d.reference.geometry.volume.shape[:2], levels, 1))
+    shape = (*d.reference.geometry.volume.shape[:2], levels)
+    half = 0.5 * thickness[:, None, None] * np.ones(shape)
+    remanence = rng.uniform(-1, 1, (count, 1, 1, 3)) * np.ones((*shape, 1))
     return make_of(d.model)._replace(
         thickness=thickness,
         sections=Sections(half * parent, half * weights),
+        levels=np.full(count, levels),
+        warping=np.zeros(shape),
         remanence=remanence,
         materials=MATERIALS,
         couplings=COUPLINGS,
@@ -121,14 +131,14 @@ def test_regions_of_one_element_with_equal_data_are_one_region(element):
 def test_levels_of_different_laws_add_up():
     """Energies, gradient and Hessian of a point; of the couple stress too, whose modulus is that of the level."""
     d = free_body(SINGLES["curved"]())
-    shell, nodes = d.model.shell, d.mesh.elements
-    surface = Surface(nodes, d.mesh.points[nodes], d.normals[nodes], shell.element, shell.micro_rotation)
-    make = mixed(d, 3)
+    surface, make = surface_of(d), mixed(d, 3)
     remanence = np.random.default_rng(6).uniform(-1, 1, make.remanence.shape)
     make = make._replace(remanence=remanence, material_of=np.array([[2, 0, 1]]), coupling_of=np.array([[1, 2, 0]]))
     alone = [
         make._replace(
-            sections=Sections(make.sections.z[:, [k]], make.sections.heights[:, [k]]),
+            sections=Sections(make.sections.z[..., [k]], make.sections.heights[..., [k]]),
+            levels=np.ones(1, dtype=np.int64),
+            warping=make.warping[..., [k]],
             remanence=remanence[:, :, [k]],
             material_of=make.material_of[:, [k]],
             coupling_of=make.coupling_of[:, [k]],
@@ -196,8 +206,8 @@ def test_point_of_a_nonlinear_coupling(nonlinear):
         energies, g, H = energy_gradient_and_hessian(d, 0, 0, x, FIELD)
         f = unpack(jets.variables(x))
         elastic, (magnetic, H_magnetic) = (
-            oracle.strain_energy(d.model.shell.material, f, point),
-            oracle.magnetic_work(nonlinear, f, point),
+            point_oracle.strain_energy(f, point),
+            point_oracle.magnetic_work(nonlinear, f, point),
         )
         errors = {
             "elastic energy": abs(energies[0] / elastic.value - 1.0),
@@ -231,11 +241,12 @@ def test_magnetic_energy_of_elements(nonlinear):
     still = jets.variables(np.zeros(oracle.unknowns(d)))
     expected = np.zeros(len(d.mesh.elements))
     for e in range(len(expected)):
-        for parent, weight in oracle.points(d, e):
+        for p, (parent, weight) in enumerate(oracle.points(d, e)):
             f, here = oracle.element_parts(d, state, e, parent, still)
-            point = oracle.point_of(d, here, e, weight, np.array(FIELD))
-            n = jets.value(oracle.rotation(f["q"])) @ point.remanence
-            for F, volume in zip(oracle.deformation_gradients(f, point), point.volume, strict=True):
-                expected[e] += volume * energy(nonlinear, jets.value(F) @ point.remanence, n, point.B)
+            point = oracle.point_of(d, here, e, p, weight, np.array(FIELD))
+            R = jets.value(oracle.rotation(f["q"]))
+            levels = zip(oracle.deformation_gradients(f, point), point.volume, point.section.remanence, strict=True)
+            for F, volume, vector in levels:
+                expected[e] += volume * energy(nonlinear, jets.value(F) @ vector, R @ vector, point.B)
     assert scaled_error(d.shell.energy(Instant(state, loading))[:, 1], expected) < 1e-12
     assert coupling_laws.is_conservative(nonlinear)

@@ -43,7 +43,7 @@ def spectrum(d):
 
 
 def rigid_motions(d):
-    """The six motions of (u, w, φ, ω) on the free unknowns, columns."""
+    """The six motions of (u, w, φ, ω, s) on the free unknowns, columns."""
     columns = []
     for axis in np.eye(3):
         motion = np.zeros(d.free.shape)
@@ -55,6 +55,7 @@ def rigid_motions(d):
                 np.cross(axis, d.normals),
                 np.zeros((len(d.mesh.points), 1)),
                 np.broadcast_to(axis, d.mesh.points.shape),
+                np.zeros((len(d.mesh.points), 1)),
             ],
             axis=1,
         )

@@ -69,12 +69,12 @@ def last_correction(path: Path) -> float:
 
 
 def equation_numbers(discretisation: Discretisation) -> np.ndarray:
-    """Equation of each nodal component, shape (nodes, 10); -1 where it is held or absent."""
+    """Equation of each nodal component, shape (nodes, 11); -1 where it is held or absent."""
     return discretisation.direction(np.arange(1.0, discretisation.dofs + 1.0)).nodal.astype(int) - 1
 
 
 def central_difference(discretisation: Discretisation, state: State, increment: np.ndarray, step: float) -> np.ndarray:
-    """Minus the derivative of the right side (dofs,) at load factor 1 along an increment (nodes, 10) of size `step`.
+    """Minus the derivative of the right side (dofs,) at load factor 1 along an increment (nodes, 11) of size `step`.
 
     The enhanced parameters follow, as the condensed tangent has it.
     """

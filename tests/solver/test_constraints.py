@@ -15,7 +15,7 @@ METRIC = Metric(1.0 / (NODES * 2.0**2))
 
 
 def random_directions(seed: int) -> tuple[State, np.ndarray, np.ndarray, np.ndarray]:
-    """An undeformed state, a chord (nodes, 3) and two increments (nodes, 10)."""
+    """An undeformed state, a chord (nodes, 3) and two increments (nodes, 11)."""
     rng = np.random.default_rng(seed)
     first, second = rng.normal(size=(2, NODES, 3))
     return State.undeformed(NODES, 1, 0), rng.normal(size=(NODES, 3)), first, second

@@ -23,7 +23,7 @@ def point(
 ) -> Point:
     """Of one node in a plane."""
     state = State.undeformed(1, 1, 1)
-    increment = np.zeros((1, 10))
+    increment = np.zeros((1, 11))
     increment[0, :2] = slope[:2]
     length = METRIC.norm(increment[:, :3], slope[2])
     return Point(

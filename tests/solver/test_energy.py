@@ -131,7 +131,7 @@ def test_work_of_a_field_is_stored() -> None:
 def asymmetry(path: Path, step: Step) -> float:
     """Of the tangent, rows and columns scaled; the larger of the plain one and the mixed one with other stresses."""
     discretisation, loading = path.discretisation, path.loading(step)
-    other = discretisation.predicted(path.steps[step.number // 2].state)
+    other = discretisation.predicted(Instant(path.steps[step.number // 2].state, loading))
     worst = 0.0
     for stresses in (None, other):
         matrix = discretisation.assemble(Instant(step.state, loading, stresses)).matrix

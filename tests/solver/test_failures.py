@@ -8,6 +8,7 @@ import pytest
 import magshell as ms
 from magshell import InputError, Settings, SolveError, solve
 from magshell.equations.discretisation import Discretisation
+from magshell.equations.instant import Instant
 from magshell.linalg import SingularMatrix, make_solver, nested_dissection
 from magshell.solver.newton import StepFailure, System, Trial, newton
 from solver.models import LENGTH, Record, contents, equation_numbers, rubber, strip
@@ -92,7 +93,7 @@ def test_singular_direction_is_named(column: int, name: str) -> None:
     direction = np.zeros(discretisation.dofs)
     direction[equation_numbers(discretisation)[tip, column]] = 1.0
     start = discretisation.undeformed()
-    trial = Trial(start, 0.1, discretisation.predicted(start))
+    trial = Trial(start, 0.1, discretisation.predicted(Instant(start, model.loading(0.1))))
     system = System(discretisation, Singular(direction), model.course(0), Settings())
     with pytest.raises(StepFailure) as caught:
         newton(system, trial, None, lambda *_: None)

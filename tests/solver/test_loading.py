@@ -15,7 +15,7 @@ VECTOR = some.tuples(NUMBER, NUMBER, NUMBER)
 
 
 def amounts(field: float, angle: float, load: float) -> Amounts:
-    return Amounts(field, angle, np.array([load, -2.0 * load]), np.full((3, 10), 0.1 * load))
+    return Amounts(field, angle, np.array([load, -2.0 * load]), np.full((3, 11), 0.1 * load))
 
 
 def course(start: Amounts, end: Amounts) -> Course:

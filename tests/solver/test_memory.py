@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -24,8 +25,8 @@ def test_entries_of_the_factors(make: Callable[[], Model]) -> None:
     """Counted on nodes, and made from the unknowns."""
     model, solver = make(), make_solver("multifrontal")
     discretisation = Discretisation(model, nested_dissection)
-    state = discretisation.undeformed()
-    matrix = discretisation.assemble(Instant(state, model.course(0).at(0.0), discretisation.predicted(state))).matrix
+    start = Instant(discretisation.undeformed(), model.course(0).at(0.0))
+    matrix = discretisation.assemble(replace(start, prediction=discretisation.predicted(start))).matrix
     assert matrix is not None
     solver.factorise(matrix)
     fronts = solver._analysis.fronts

@@ -68,7 +68,8 @@ def errors(case: Case, mixed: bool, ε: float) -> np.ndarray:
     model, start = case.model, converged(case)
     discretisation = Recording(model, nested_dissection)
     discretisation.states = []
-    trial = Trial(start, BEGIN * (1 + ε), discretisation.predicted(start))
+    load_factor = BEGIN * (1 + ε)
+    trial = Trial(start, load_factor, discretisation.predicted(Instant(start, model.loading(load_factor))))
     settings = Settings(tolerance=SHARP, mixed_tangent=mixed, max_iterations=20)
     system = System(discretisation, make_solver("superlu"), model.course(0), settings)
     newton(system, trial, None, lambda *_: None)
@@ -108,7 +109,7 @@ def constrained_errors(kind: str, ε: float) -> np.ndarray:
     discretisation.states = []
     increment = ε * difference(begin, discretisation.undeformed())
     state = moved(begin, increment)
-    prediction = discretisation.predicted(begin, increment)
+    prediction = discretisation.predicted(Instant(begin, TURNED_IN_A_FIELD.loading(0.5)), increment)
     tip, load_factor = TURNED_IN_A_FIELD.probe_nodes["tip"], 0.5 * (1 + ε)
     held: Constraint = ProbeValue(tip, 2, float(state.u[tip, 2]))
     if kind == "sphere":
@@ -169,7 +170,7 @@ def test_tangent_of_the_free_rotations_at_the_end(model: ms.Model) -> None:
     scale = np.sqrt(np.abs(matrix.diagonal()))
     equations = equation_numbers(discretisation)[tip]
     for component in (7, 9):
-        increment = np.zeros((len(model.shell.mesh.points), 10))
+        increment = np.zeros((len(model.shell.mesh.points), 11))
         increment[tip, component] = step
         numeric = central_difference(discretisation, state, increment, step)
         equation = equations[component]
