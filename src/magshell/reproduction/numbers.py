@@ -196,8 +196,8 @@ def _touching(path: Path, finer: Path) -> list[Row]:
         f"The mid-surfaces of neighbours meet at the polar angle {_polar(middle)}; at the paper's {TOUCHING:g} mT the "
         f"arms overlap: {' and '.join(overlaps)} at mid-surface and outer face, of a thickness of "
         f"{1e3 * path.model.shell.greatest_thickness:g} mm. It is not the mesh: the default element, which converges "
-        f"faster, has them meet at {_field(first_touch(finer, MIDDLE)):.2f} mT. The paper does not say how it found its "
-        "field."
+        f"faster, has them meet at {_field(first_touch(finer, MIDDLE)):.2f} mT. The paper does not say how it found "
+        "its field."
     )
     rows.append(Row("gripper", "arms touch: mid-surfaces", "mT", TOUCHING, _field(middle), note))
     note = f"from here on their sides overlap through the whole thickness, first at the polar angle {_polar(inner)}"
