@@ -90,7 +90,9 @@ def deformation_gradients(f, point):
     F1 = (point.dD + f["dw"]).T @ dual[:2] + 2.0 * f["phi"] * np.outer(d, dual[2])
     own = f.get("zeta", np.zeros(len(section.z)))
     along = np.outer(d, dual[2])
-    return [(F0 + z * F1 + ζ * along) @ Q_inverse for z, ζ, Q_inverse in zip(section.z, own, point.Q_inverse, strict=True)]
+    return [
+        (F0 + z * F1 + ζ * along) @ Q_inverse for z, ζ, Q_inverse in zip(section.z, own, point.Q_inverse, strict=True)
+    ]
 
 
 def wryness_vectors(f):
@@ -171,9 +173,7 @@ def flat(parts):
 def of_flat(x, shapes):
     """Named parts of one array."""
     sizes = np.cumsum([np.size(shapes[name]) for name in NAMES])[:-1]
-    return {
-        name: part.reshape(np.shape(shapes[name])) for name, part in zip(NAMES, np.split(x, sizes), strict=True)
-    }
+    return {name: part.reshape(np.shape(shapes[name])) for name, part in zip(NAMES, np.split(x, sizes), strict=True)}
 
 
 class Local(NamedTuple):

@@ -122,7 +122,9 @@ def test_mixed_tangent_is_that_of_an_energy_with_the_given_stresses(material, se
 @each_material
 def test_mixed_tangent_is_symmetric_with_a_coupling_modulus_too(material):
     d = free_body(SINGLES["curved"](), material, magnetics.DeformationGradientEnergy(0.8))
-    K = dense(d, d.assemble(Instant(random_state(d, 4), d.model.loading(1.0), own_stresses(d, random_state(d, 5)))).matrix)
+    K = dense(
+        d, d.assemble(Instant(random_state(d, 4), d.model.loading(1.0), own_stresses(d, random_state(d, 5)))).matrix
+    )
     asymmetry = scaled_error(K, K.T)
     assert asymmetry < 1e-12, f"asymmetry {asymmetry:.1e}"
 

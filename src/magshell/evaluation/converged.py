@@ -60,6 +60,14 @@ class Converged:
         """Thickness stretch φ (nodes,), 1/m."""
         return self._filled(self.state.phi[: len(self.mesh.points)], self.discretisation.reference.body.layout.phi)
 
+    def element_directors(self) -> FloatArray:
+        """Director at the nodes of each element (elements, 8, 3), which differs between regions of other thickness."""
+        return self.director()[self.mesh.elements]
+
+    def element_phi(self) -> FloatArray:
+        """Thickness stretch φ at the nodes of each element (elements, 8), 1/m."""
+        return self.phi()[self.mesh.elements]
+
     def rotation(self) -> FloatArray:
         """Micro-rotation vector (nodes, 3), rad, of magnitude at most π."""
         q = self.state.q[: len(self.mesh.points)]

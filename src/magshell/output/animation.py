@@ -18,13 +18,14 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
+from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import find
 from magshell.files import write_atomically
 from magshell.output.labels import bar_title
 from magshell.output.scene import Camera, best_axes, darkroom, deformed, field_arrow, fit, lettered
 from magshell.output.shape import INCHES, SCENE, colour_bar, colour_scale, shown_values, triad
+from magshell.output.skin import Skin, skin_of
 from magshell.output.style import ACCENT, DPI, INK, said
-from magshell.output.tessellation import Tessellation
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -95,12 +96,12 @@ def film(path: Path, steps: Sequence[Step], color: str, dpi: int = DPI) -> Itera
 
     output, component = find(color)
     mesh = path.discretisation.mesh
-    cells = Tessellation(mesh.elements)
-    shown = shown_values(path, steps, output, component, cells)
+    skin = skin_of(path.model.shell)
+    shown = shown_values(path, steps, output, component, skin)
     values = {step.number: each for step, each in zip(steps, shown, strict=True)}
     colours = ScalarMappable(*colour_scale(np.array([f(v) for v in values.values() for f in (np.min, np.max)])))
     shape = round(dpi * INCHES[0] * SCENE[2]), round(dpi * INCHES[1] * SCENE[3])
-    camera, arrows = _look(path, steps, cells, shape)
+    camera, arrows = _look(path, steps, skin, shape)
     front = _front(camera, colours, bar_title(output, component), dpi)
 
     with darkroom(camera, shape, quick=True) as expose:
@@ -108,7 +109,8 @@ def film(path: Path, steps: Sequence[Step], color: str, dpi: int = DPI) -> Itera
         def picture(step: Step) -> Image:
             rgb = colours.to_rgba(values[step.number], bytes=True)[:, :3]
             arrow = arrows[step.number]
-            scene = expose(deformed(mesh, cells, step.state.displacement(len(mesh.points)), rgb, arrow, camera))
+            placed = skin.placed(converged(path.discretisation, step))
+            scene = expose(deformed(mesh, placed, rgb, arrow, camera))
             whole = images.new("RGBA", front.size, "white")
             whole.alpha_composite(images.fromarray(scene), (0, front.height - shape[1]))
             whole.alpha_composite(front)
@@ -251,11 +253,12 @@ def _video(pictures: Sequence[Image], seconds: Sequence[float], suffix: str) -> 
 
 
 def _look(
-    path: Path, steps: Sequence[Step], cells: Tessellation, shape: tuple[int, int]
+    path: Path, steps: Sequence[Step], skin: Skin, shape: tuple[int, int]
 ) -> tuple[Camera, dict[int, FloatArray | None]]:
     """The camera of all steps, and the field arrow of each, as long as the field is strong."""
     mesh = path.discretisation.mesh
-    extent = np.concatenate([mesh.points, *(mesh.points + step.state.displacement(len(mesh.points)) for step in steps)])
+    places = [skin.extent(converged(path.discretisation, step)) for step in steps]
+    extent = np.concatenate([mesh.points, *places])
     axes = best_axes(np.vstack([mesh.points, mesh.points + steps[-1].state.displacement(len(mesh.points))]))
     strongest = max(float(np.linalg.norm(step.flux_density)) for step in steps)
     arrows: dict[int, FloatArray | None] = {}
@@ -265,8 +268,8 @@ def _look(
             share = 0.35 + 0.65 * float(np.linalg.norm(step.flux_density)) / strongest
             arrow = arrow.mean(axis=0) + share * (arrow - arrow.mean(axis=0))
         arrows[step.number] = arrow
-    places = [lettered(arrow, axes) for arrow in arrows.values() if arrow is not None]
-    return fit(np.concatenate([extent, *places]), axes, shape[0] / shape[1]), arrows
+    letters = [lettered(arrow, axes) for arrow in arrows.values() if arrow is not None]
+    return fit(np.concatenate([extent, *letters]), axes, shape[0] / shape[1]), arrows
 
 
 def _front(camera: Camera, colours: Any, title: str, dpi: int) -> Image:

@@ -20,8 +20,8 @@ from magshell.output.scene import (
     polylines,
     viewing_axes,
 )
+from magshell.output.skin import Hull
 from magshell.output.style import INK
-from magshell.output.tessellation import Tessellation, element_edges
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh
@@ -123,68 +123,34 @@ def step_at(path: Path, flux_density: float) -> Step:
 def solid(body: Body) -> Solid:
     """Upper and lower faces and the walls between them, m."""
     path, d = body.path, body.path.discretisation
-    cells = Tessellation(d.mesh.elements, PIECES)
-    sides = faces(path, body.step)
+    reached = converged(d, body.step)
+    hull = _hull(path, body.copies)
     output, component = find(body.output)
-    nodal = np.asarray(output.evaluate(converged(d, body.step)), dtype=float)
+    nodal = np.asarray(output.evaluate(reached), dtype=float)
     if nodal.ndim == 2:
         nodal = nodal[:, component - 1] if component else np.linalg.norm(nodal, axis=1)
-
-    parts = []
-    for face in sides:
-        surface = cells.surface(face)
-        parts.append((surface.points, surface.normals, surface.triangles, cells.at_points(nodal)))
-    outer = _outer_edges(d.mesh, body.copies)
-    below, above = (cells.edges(face, outer) for face in sides)
-    outward = np.cross(np.gradient(0.5 * (below + above), axis=1), above - below)
-    outward /= np.linalg.norm(outward, axis=-1, keepdims=True)
-    on_edge = cells.edges(np.repeat(nodal[:, None], 3, axis=1), outer)[..., 0]
-    lower = np.arange(below[..., 0].size).reshape(below.shape[:2])
-    upper = lower + lower.size
-    quads = np.stack([lower[:, :-1], lower[:, 1:], upper[:, 1:], upper[:, :-1]], axis=-1).reshape(-1, 4)
-    parts.append(
-        (
-            np.concatenate([below, above]).reshape(-1, 3),
-            np.tile(outward.reshape(-1, 3), (2, 1)),
-            np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]]),
-            np.tile(on_edge.ravel(), 2),
-        )
-    )
-    points, normals, triangles, values = zip(*parts, strict=True)
-    first = np.cumsum([0, *map(len, points)])
-    inner, borders = element_edges(d.mesh.elements), _group_borders(d.mesh)
-    return Solid(
-        np.concatenate(points),
-        np.concatenate(normals),
-        np.concatenate([part + start for part, start in zip(triangles, first[:-1], strict=True)]),
-        np.concatenate(values),
-        np.concatenate([below, above, *(cells.edges(face, borders) for face in sides)]),
-        np.concatenate([cells.edges(face, inner) for face in sides]),
-    )
+    placed = hull.placed(reached)
+    return Solid(*placed.surface, hull.at_points(nodal), placed.outer, placed.inner)
 
 
-def _outer_edges(mesh: Mesh, copies: Sequence[Copy]) -> IntArray:
-    """Boundary edges that are not on a mirror plane between two copies."""
+def _hull(path: Path, copies: Sequence[Copy]) -> Hull:
+    """The closed body, without walls on the mirror planes between the copies."""
+    mesh, shell = path.discretisation.mesh, path.model.shell
+    group = np.zeros(len(mesh.elements), dtype=np.int64)
+    for number, members in enumerate(mesh.element_groups.values(), start=1):
+        group[members] = number
+    made = group * len(shell.parts) + shell.part_of
+    return Hull(mesh, shell.faces_at_nodes, made, PIECES, _on_mirror_planes(mesh, copies))
+
+
+def _on_mirror_planes(mesh: Mesh, copies: Sequence[Copy]) -> IntArray:
+    """Middle nodes of the boundary edges on a mirror plane between two copies."""
     edges = mesh.boundary_edges
     ends = mesh.points[edges]
     inside = np.zeros(len(edges), dtype=bool)
     for copy in copies[1:]:
         inside |= np.abs(copy.of(ends) - ends).max(axis=(1, 2)) < 1e-6 * mesh.size
-    return edges[~inside]
-
-
-def _group_borders(mesh: Mesh) -> IntArray:
-    """Edges (k, 3) between elements of different groups."""
-    group = np.zeros(len(mesh.elements), dtype=np.int64)
-    for number, members in enumerate(mesh.element_groups.values(), start=1):
-        group[members] = number
-    sides = np.repeat(group, 4)
-    middles = mesh.elements[:, 4:].ravel()
-    least, most = np.full(len(mesh.points), len(group)), np.full(len(mesh.points), -1)
-    np.minimum.at(least, middles, sides)
-    np.maximum.at(most, middles, sides)
-    edges = element_edges(mesh.elements)
-    return edges[least[edges[:, 2]] < most[edges[:, 2]]]
+    return edges[inside, 2]
 
 
 def cameras_for(
@@ -210,9 +176,11 @@ def cameras_for(
 
 def _extent(bodies: Sequence[Body]) -> FloatArray:
     """Positions of all nodes of both faces of all copies."""
-    return np.concatenate(
-        [copy.of(face) for body in bodies for face in faces(body.path, body.step) for copy in body.copies]
-    )
+    places = []
+    for body in bodies:
+        x = _hull(body.path, body.copies).extent(converged(body.path.discretisation, body.step))
+        places += [copy.of(x) for copy in body.copies]
+    return np.concatenate(places)
 
 
 def render(

@@ -141,6 +141,9 @@ def remanence_marks(model: Model, shown: FloatArray, axes: FloatArray, template:
     drawn = length * vectors[chosen] / sizes.max()
     out = np.abs((drawn * normals[chosen]).sum(axis=1))
     lifted = 0.5 * out + 0.12 * length * (1.0 - out / length)
+    if not (template or model.shell.plain):
+        heights = np.abs(model.shell.faces_at_nodes).max(axis=(1, 2))
+        lifted += heights[chosen]
     name = show(float(sizes.max()), FLUX_DENSITY)
     if np.ptp(sizes[bearing]) > 1e-6 * sizes.max():
         name = f"up to {name}"

@@ -16,6 +16,7 @@ import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray
 from magshell.output.rendering import require_rendering
+from magshell.output.skin import MOST_ELEMENTS_WITH_EDGES, Placed
 from magshell.output.style import ACCENT, INK, PALE
 from magshell.output.tessellation import Tessellation, element_edges
 
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
 
 OVERSAMPLING = 2
 MARGIN = 1.06
-MOST_ELEMENTS_WITH_EDGES = 4000
 SURFACE = {"smooth_shading": True, "specular": 0.12, "specular_power": 20, "ambient": 0.58}
 """How surfaces take the light."""
 
@@ -83,23 +83,16 @@ def fit(points: FloatArray, axes: FloatArray, aspect: float) -> Camera:
 
 
 def draw(
-    mesh: Mesh,
-    tessellation: Tessellation,
-    displacement: FloatArray,
-    colours: AnyArray,
-    field: FloatArray,
-    shape: tuple[int, int],
+    mesh: Mesh, placed: Placed, colours: AnyArray, field: FloatArray, shape: tuple[int, int]
 ) -> tuple[AnyArray, Camera, FloatArray | None]:
     """Draw the deformed shell over its undeformed outline.
 
     Parameters
     ----------
     mesh : Mesh
-    tessellation : Tessellation
-        Of the mesh's elements.
-    displacement : FloatArray, shape (nodes, 3)
-        m.
-    colours : AnyArray, shape (points of the tessellation, 3)
+    placed : Placed
+        What is drawn of the shell, where it is.
+    colours : AnyArray, shape (points of the surface, 3)
         Red, green, blue, 0 to 255.
     field : FloatArray, shape (3,)
         External flux density; only its direction is drawn, nothing if it is zero.
@@ -119,26 +112,21 @@ def draw(
     RenderingUnavailable
         This machine cannot draw without a screen.
     """
-    extent = np.vstack([tessellation.at_points(mesh.points + displacement), tessellation.at_points(mesh.points)])
+    extent = np.vstack([placed.surface.points, Tessellation(mesh.elements).at_points(mesh.points)])
     axes = best_axes(extent)
     arrow = field_arrow(field, extent, axes)
     kept = extent if arrow is None else np.vstack([extent, lettered(arrow, axes)])
     camera = fit(kept, axes, shape[0] / shape[1])
-    return photograph(deformed(mesh, tessellation, displacement, colours, arrow, camera), camera, shape), camera, arrow
+    return photograph(deformed(mesh, placed, colours, arrow, camera), camera, shape), camera, arrow
 
 
 def deformed(
-    mesh: Mesh,
-    tessellation: Tessellation,
-    displacement: FloatArray,
-    colours: AnyArray,
-    arrow: FloatArray | None,
-    camera: Camera,
+    mesh: Mesh, placed: Placed, colours: AnyArray, arrow: FloatArray | None, camera: Camera
 ) -> Callable[[Any], None]:
     """What adds the deformed shell, its undeformed outline and the field arrow (tail and head) to a plotter."""
     import pyvista
 
-    surface = tessellation.surface(mesh.points + displacement)
+    surface, cells = placed.surface, Tessellation(mesh.elements)
     size, axes = 2 * camera.half_height, camera.axes
     nearer = 2e-3 * size * axes[2]
     behind = -4 * size * axes[2]
@@ -148,15 +136,14 @@ def deformed(
     body.point_data.active_normals = surface.normals
 
     def lines(positions: FloatArray, triples: AnyArray) -> Any:
-        return polylines(tessellation.edges(positions, triples))
+        return polylines(cells.edges(positions, triples))
 
     def place(plotter: Any) -> None:
         plotter.add_mesh(body, scalars="colours", rgb=True, **SURFACE)
         thin = {"lighting": False, "line_width": 1.0 * OVERSAMPLING}
         thick = {"lighting": False, "line_width": 1.9 * OVERSAMPLING}
-        position = mesh.points + displacement + nearer
-        plotter.add_mesh(lines(position, edges), color=INK, opacity=0.28, **thin)
-        plotter.add_mesh(lines(position, mesh.boundary_edges), color=INK, **thick)
+        plotter.add_mesh(polylines(placed.inner + nearer), color=INK, opacity=0.28, **thin)
+        plotter.add_mesh(polylines(placed.outer + nearer), color=INK, **thick)
         plotter.add_mesh(lines(mesh.points + behind, edges), color=PALE, opacity=0.5, **thin)
         plotter.add_mesh(lines(mesh.points, mesh.boundary_edges), color=PALE, **thick)
         if arrow is not None:

@@ -15,9 +15,9 @@ from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError
 from magshell.magnetics.remanence import placed
 from magshell.mesh.edges import SIDES
+from magshell.model.words import name_of, thickness_of
 from magshell.output.marks import Mark, field_marks, load_marks, probe_marks, remanence_marks, support_marks
 from magshell.output.scene import (
-    MOST_ELEMENTS_WITH_EDGES,
     OVERSAMPLING,
     SURFACE,
     Camera,
@@ -27,15 +27,15 @@ from magshell.output.scene import (
     viewing_axes,
 )
 from magshell.output.shape import triad
+from magshell.output.skin import MOST_ELEMENTS_WITH_EDGES, Hull, own_nodes
 from magshell.output.style import DPI, GREY, INK, PALE, TEXT, deliver
 from magshell.output.tessellation import Tessellation
-from magshell.shell.triangle import REPEATED
 
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-    from magshell.mesh import Mesh
     from magshell.model.model import Model
+    from magshell.model.shell import Shell
 
 INCHES = (10.0, 7.0)
 SCENE = (0.0, 0.015, 0.71, 0.875)
@@ -95,7 +95,7 @@ def draw_setup(
     triad(corner, scene.camera.axes)
     _scale_bar(figure, scene.camera)
     figure.text(0.035, 0.94, title, va="center", **(TEXT | {"fontsize": 20}))
-    _legend(figure, model.shell.mesh, scene.marks, template)
+    _legend(figure, model.shell, scene.marks, template)
     return deliver(figure, file)
 
 
@@ -138,6 +138,8 @@ def setup_scene(model: Model, pixels: tuple[int, int], template: bool = False, b
     at_nodes = mesh.points[mesh.elements]
     shown = _in_template(model, at_nodes) if template else at_nodes
     extent = np.concatenate([shown.reshape(-1, 3), mesh.points])
+    if not (template or model.shell.plain):
+        extent = np.concatenate([extent, *(face.reshape(-1, 3) for face in _faces(model))])
     axes = _view(extent)
     size = float(np.linalg.norm(np.ptp(extent, axis=0)))
     marks = remanence_marks(model, shown, axes, template)
@@ -148,7 +150,10 @@ def setup_scene(model: Model, pixels: tuple[int, int], template: bool = False, b
     camera = fit(kept, axes, pixels[0] / pixels[1])
 
     def place(plotter: Any) -> None:
-        _place_body(plotter, mesh, shown, camera, size, template)
+        if template or model.shell.plain:
+            _place_body(plotter, model.shell, shown, camera, size, template)
+        else:
+            _place_hull(plotter, model, camera, size)
         for mark in marks:
             mark.place(plotter)
 
@@ -173,18 +178,31 @@ def _view(points: FloatArray) -> FloatArray:
     return next(axes for axes in views if spread(axes) >= 0.85 * largest)
 
 
-def tints(mesh: Mesh) -> AnyArray:
-    """Red, green, blue (elements, 3), 0 to 255: one tint for each element group, the plain one without groups."""
+def _faces(model: Model) -> list[FloatArray]:
+    """Positions (elements, 8, 3) of the bottom and the top face of the undeformed body."""
+    shell = model.shell
+    middle, normals = shell.mesh.points[shell.mesh.elements], model.normals[shell.mesh.elements]
+    return [middle + height[..., None] * normals for height in np.moveaxis(shell.faces_at_nodes, 2, 0)]
+
+
+def tints(shell: Shell) -> AnyArray:
+    """Red, green, blue (elements, 3), 0 to 255: a tint for each region or else element group; the plain one without."""
     from matplotlib.colors import to_rgb
 
-    colours = np.tile(np.array(to_rgb(PLAIN)), (len(mesh.elements), 1))
-    for members, tint in _tinted(mesh).values():
+    colours = np.tile(np.array(to_rgb(PLAIN)), (len(shell.mesh.elements), 1))
+    for members, tint in _tinted(shell).values():
         colours[members] = to_rgb(tint)
     return np.asarray((255 * colours).round().astype(np.uint8))
 
 
-def _tinted(mesh: Mesh) -> dict[str, tuple[AnyArray, str]]:
-    """The elements in a group's tint, and the tint; of several groups the last one shows."""
+def _tinted(shell: Shell) -> dict[str, tuple[AnyArray, str]]:
+    """The elements in the tint of a region or group, and the tint; of several groups the last one shows."""
+    mesh, parts = shell.mesh, shell.parts
+    if len(parts) > 1:
+        return {
+            f"{name_of(part)}, {thickness_of(part)}": (part.elements, TINTS[k % len(TINTS)])
+            for k, part in enumerate(parts)
+        }
     if len(mesh.element_groups) < 2:
         return {}
     last = np.full(len(mesh.elements), -1)
@@ -195,19 +213,35 @@ def _tinted(mesh: Mesh) -> dict[str, tuple[AnyArray, str]]:
     return {names[number]: (np.flatnonzero(last == number), TINTS[k % len(TINTS)]) for k, number in seen}
 
 
-def _place_body(plotter: Any, mesh: Mesh, shown: FloatArray, camera: Camera, size: float, template: bool) -> None:
+def _place_hull(plotter: Any, model: Model, camera: Camera, size: float) -> None:
+    """The body with its true thickness, its edges, steps and borders of regions."""
+    import pyvista
+
+    shell = model.shell
+    hull = Hull(shell.mesh, shell.faces_at_nodes, shell.part_of)
+    placed = hull.between(*_faces(model))
+    body = pyvista.PolyData.from_regular_faces(placed.surface.points, placed.surface.triangles)
+    body.point_data["colours"] = hull.on_elements(tints(shell))
+    body.point_data.active_normals = placed.surface.normals
+    plotter.add_mesh(body, scalars="colours", rgb=True, **(SURFACE | LIGHT))
+    nearer = 1.5e-3 * size * camera.axes[2]
+    thin, thick = ({"lighting": False, "line_width": OVERSAMPLING * width} for width in (0.8, 1.8))
+    if len(shell.mesh.elements) <= MOST_ELEMENTS_WITH_EDGES:
+        plotter.add_mesh(polylines(placed.inner + nearer), color=INK, opacity=0.22, **thin)
+    plotter.add_mesh(polylines(placed.outer + nearer), color=INK, **thick)
+
+
+def _place_body(plotter: Any, shell: Shell, shown: FloatArray, camera: Camera, size: float, template: bool) -> None:
     """The surface and its element edges; every element has its own nodes, since a template may tear groups apart."""
     import pyvista
 
-    own = np.arange(8 * len(shown)).reshape(-1, 8)
-    own[:, 3] = np.where(mesh.triangles, own[:, 2], own[:, 3])
-    own[:, 6] = np.where(mesh.triangles, own[:, 2], own[:, 6])
-    own[np.ix_(mesh.triangles, REPEATED)] = own[mesh.triangles, 2:3]
+    mesh = shell.mesh
+    own = own_nodes(mesh)
     cells = Tessellation(own)
     positions = shown.reshape(-1, 3)
     surface = cells.surface(positions)
     body = pyvista.PolyData.from_regular_faces(surface.points, surface.triangles)
-    body.point_data["colours"] = cells.on_elements(tints(mesh))
+    body.point_data["colours"] = cells.on_elements(tints(shell))
     body.point_data.active_normals = surface.normals
     plotter.add_mesh(body, scalars="colours", rgb=True, **(SURFACE | LIGHT))
     nearer = 1.5e-3 * size * camera.axes[2]
@@ -258,7 +292,7 @@ def _scale_bar(figure: Any, camera: Camera) -> None:
     axes.set_ylim(0, 1)
 
 
-def _legend(figure: Any, mesh: Mesh, marks: list[Mark], template: bool) -> None:
+def _legend(figure: Any, shell: Shell, marks: list[Mark], template: bool) -> None:
     from matplotlib.lines import Line2D
 
     handles, names = [], []
@@ -270,7 +304,7 @@ def _legend(figure: Any, mesh: Mesh, marks: list[Mark], template: bool) -> None:
                 )
             )
             names.append(mark.name)
-    groups = _tinted(mesh)
+    groups = _tinted(shell)
     for group, (_, colour) in list(groups.items())[:MOST_NAMES]:
         handles.append(Line2D([], [], color=colour, marker="s", linestyle="none", markersize=11, markeredgecolor=PALE))
         names.append(group)

@@ -10,12 +10,13 @@ import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError
+from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import Output, find
 from magshell.output.labels import bar_title, shown_unit
 from magshell.output.rounding import without_round_off
 from magshell.output.scene import draw
+from magshell.output.skin import Skin, skin_of
 from magshell.output.style import ACCENT, DPI, GREY, TEXT, TICKS, deliver
-from magshell.output.tessellation import Tessellation
 
 if TYPE_CHECKING:
     from matplotlib.cm import ScalarMappable
@@ -66,13 +67,14 @@ def draw_shape(
     output, component = find(color)
     shown = _step(path, step)
     mesh = path.discretisation.mesh
-    tessellation = Tessellation(mesh.elements)
-    (values,) = shown_values(path, [shown], output, component, tessellation)
+    skin = skin_of(path.model.shell)
+    (values,) = shown_values(path, [shown], output, component, skin)
     colours = ScalarMappable(*colour_scale(values))
     rgb = colours.to_rgba(values, bytes=True)[:, :3]
     field = shown.flux_density
     pixels = (round(DPI * INCHES[0] * SCENE[2]), round(DPI * INCHES[1] * SCENE[3]))
-    scene, camera, arrow = draw(mesh, tessellation, shown.state.displacement(len(mesh.points)), rgb, field, pixels)
+    placed = skin.placed(converged(path.discretisation, shown))
+    scene, camera, arrow = draw(mesh, placed, rgb, field, pixels)
 
     figure = Figure(figsize=INCHES, dpi=DPI, facecolor="white")
     axes = figure.add_axes(SCENE)
@@ -103,12 +105,12 @@ def colour_bar(figure: Figure, colours: ScalarMappable, title: str) -> None:
 
 
 def shown_values(
-    path: Path, steps: Sequence[Step], output: Output, component: int | None, tessellation: Tessellation
+    path: Path, steps: Sequence[Step], output: Output, component: int | None, skin: Skin
 ) -> Iterator[FloatArray]:
-    """The scalar shown at each step, in the unit of pictures, at the points of the tessellation."""
+    """The scalar shown at each step, in the unit of pictures, at the points of the surface."""
     _, factor = shown_unit(output)
     for values in without_round_off(path, output, steps):
-        spread = tessellation.at_points(values) if output.where == "point" else tessellation.on_elements(values)
+        spread = skin.at_points(values) if output.where == "point" else skin.on_elements(values)
         if output.components == 3:
             spread = np.linalg.norm(spread, axis=1) if component is None else spread[:, component - 1]
         yield np.asarray(factor * spread)

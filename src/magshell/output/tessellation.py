@@ -50,20 +50,21 @@ class Tessellation:
 
     Attributes
     ----------
+    pieces : int
     lattices : list of Lattice
         Of the quadrilaterals and of the triangles, if there are any.
     """
 
     def __init__(self, elements: IntArray, pieces: int | None = None) -> None:
-        self._pieces = pieces or max(1, min(6, int(600 / len(elements) ** 0.5)))
+        self.pieces = pieces or max(1, min(6, int(600 / len(elements) ** 0.5)))
         triangles = is_triangle(elements)
         lattices = []
         if not triangles.all():
             chosen = np.flatnonzero(~triangles)
-            lattices.append(Lattice(chosen, elements[chosen], *_square(self._pieces)))
+            lattices.append(Lattice(chosen, elements[chosen], *_square(self.pieces)))
         if triangles.any():
             chosen = np.flatnonzero(triangles)
-            lattices.append(Lattice(chosen, elements[chosen][:, triangle.SLOTS], *_triangle(self._pieces)))
+            lattices.append(Lattice(chosen, elements[chosen][:, triangle.SLOTS], *_triangle(self.pieces)))
         self.lattices = lattices
 
     def surface(self, positions: FloatArray) -> Surface:
@@ -103,7 +104,7 @@ class Tessellation:
         -------
         FloatArray, shape (k, pieces + 1, 3)
         """
-        t = np.linspace(-1, 1, self._pieces + 1)
+        t = np.linspace(-1, 1, self.pieces + 1)
         N = np.stack([t * (t - 1) / 2, t * (t + 1) / 2, 1 - t**2], axis=1)
         return np.asarray(np.einsum("mn,enk->emk", N, positions[triples]))
 

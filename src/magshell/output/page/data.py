@@ -14,7 +14,8 @@ from magshell.output.labels import plain, shown_unit
 from magshell.output.page.arrays import quantised, span, text
 from magshell.output.page.stencils import stencils
 from magshell.output.rounding import without_round_off
-from magshell.output.scene import MOST_ELEMENTS_WITH_EDGES, best_axes
+from magshell.output.scene import best_axes
+from magshell.output.skin import MOST_ELEMENTS_WITH_EDGES
 from magshell.output.tessellation import element_edges
 
 if TYPE_CHECKING:

@@ -1,0 +1,227 @@
+"""What pictures show of a shell: its mid-surface, or the closed body between its two faces.
+
+A shell of one thickness with the mesh in the middle is shown as its mid-surface. Where thickness, layers or materials
+differ, or the mesh lies at a face, both faces are shown at their true heights, with walls at the outer edges and
+wherever the faces of two neighbours differ, and lines between the regions.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+import numpy as np
+
+from magshell.arrays import AnyArray, FloatArray, IntArray
+from magshell.evaluation.converged import Converged
+from magshell.mesh.edges import SIDES
+from magshell.output.tessellation import Surface, Tessellation, element_edges
+from magshell.shell.triangle import REPEATED
+
+if TYPE_CHECKING:
+    from magshell.mesh import Mesh
+    from magshell.model.shell import Shell
+
+MOST_ELEMENTS_WITH_EDGES = 4000
+SAME = 1e-9
+"""Heights that differ by less than this part of the greatest are the same."""
+
+
+class Placed(NamedTuple):
+    """A skin in a state.
+
+    Attributes
+    ----------
+    surface : Surface
+    inner, outer : FloatArray, shape (k, pieces + 1, 3)
+        Curves: edges of elements; outer edges, steps and borders of regions.
+    """
+
+    surface: Surface
+    inner: FloatArray
+    outer: FloatArray
+
+
+class Skin(Protocol):
+    """What is drawn of a shell."""
+
+    def at_points(self, values: AnyArray) -> AnyArray:
+        """Nodal values (nodes, ...) at the points of the surface."""
+
+    def on_elements(self, values: AnyArray) -> AnyArray:
+        """Values of elements (elements, ...) at the points of the surface."""
+
+    def placed(self, reached: Converged) -> Placed:
+        """Where it is in a state."""
+
+    def extent(self, reached: Converged) -> FloatArray:
+        """Positions (n, 3) of its nodes in a state, m."""
+
+
+def skin_of(shell: Shell, pieces: int | None = None) -> Skin:
+    """What is drawn of a shell, each element cut into `pieces` × `pieces`."""
+    if shell.plain:
+        return Sheet(shell.mesh, pieces)
+    return Hull(shell.mesh, shell.faces_at_nodes, shell.part_of, pieces)
+
+
+class Sheet:
+    """The mid-surface."""
+
+    def __init__(self, mesh: Mesh, pieces: int | None = None) -> None:
+        self._mesh, self._cells = mesh, Tessellation(mesh.elements, pieces)
+        few = len(mesh.elements) <= MOST_ELEMENTS_WITH_EDGES
+        self._edges = element_edges(mesh.elements) if few else mesh.boundary_edges
+
+    def at_points(self, values: AnyArray) -> AnyArray:
+        """Nodal values at the points."""
+        return self._cells.at_points(values)
+
+    def on_elements(self, values: AnyArray) -> AnyArray:
+        """Values of elements at the points."""
+        return self._cells.on_elements(values)
+
+    def extent(self, reached: Converged) -> FloatArray:
+        """Positions of its nodes in a state."""
+        return self._mesh.points + reached.state.u
+
+    def placed(self, reached: Converged) -> Placed:
+        """Where it is in a state."""
+        x = self._mesh.points + reached.state.u
+        curves = (self._cells.edges(x, edges) for edges in (self._edges, self._mesh.boundary_edges))
+        return Placed(self._cells.surface(x), *curves)
+
+
+class Sides(NamedTuple):
+    """Sides of the elements that are edges.
+
+    Attributes
+    ----------
+    numbers : IntArray, shape (n,)
+        4 e + s for side s of element e.
+    partners : IntArray, shape (n,)
+        Place in `numbers` of the side of the neighbour; -1 where there is none.
+    """
+
+    numbers: IntArray
+    partners: IntArray
+
+
+def sides_of(mesh: Mesh) -> Sides:
+    """All sides, each with its neighbour."""
+    ends = mesh.elements[:, SIDES].reshape(-1, 3)
+    numbers = np.flatnonzero(ends[:, 0] != ends[:, 1])
+    order = np.argsort(ends[numbers, 2], kind="stable")
+    middles = ends[numbers[order], 2]
+    partners, pairs = np.full(len(numbers), -1), np.flatnonzero(middles[1:] == middles[:-1])
+    partners[order[pairs]], partners[order[pairs + 1]] = order[pairs + 1], order[pairs]
+    return Sides(numbers, partners)
+
+
+class Hull:
+    """The body between two faces.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    heights : FloatArray, shape (elements, 8, 2)
+        Of the bottom and the top face over the mesh at the nodes of the elements, m.
+    group_of : IntArray, shape (elements,)
+        Between elements of different groups a line is drawn.
+    pieces : int, optional
+        Along the side of an element.
+    open_edges : IntArray, shape (k,), optional
+        Middle nodes of edges of the boundary without wall and line.
+    """
+
+    def __init__(
+        self,
+        mesh: Mesh,
+        heights: FloatArray,
+        group_of: IntArray,
+        pieces: int | None = None,
+        open_edges: IntArray | None = None,
+    ) -> None:
+        self._mesh, self._heights, self._nodes = mesh, heights, own_nodes(mesh)
+        self._cells = Tessellation(self._nodes, pieces)
+        sides = sides_of(mesh)
+        element, side = np.divmod(sides.numbers, 4)
+        inner = sides.partners >= 0
+        partner = sides.partners[inner]
+        at_sides = heights[element[:, None], SIDES[side]]
+        step, border = ~inner, np.zeros(len(inner), dtype=bool)
+        gap = np.abs(at_sides[inner] - at_sides[partner][:, [1, 0, 2]]).max(axis=(1, 2))
+        step[inner] = gap > SAME * np.abs(heights).max()
+        border[inner] = (group_of[element[inner]] != group_of[element[partner]]) & (np.flatnonzero(inner) < partner)
+        if open_edges is not None:
+            step &= ~np.isin(mesh.elements[element, SIDES[side][:, 2]], open_edges)
+        triples = self._nodes[element[:, None], SIDES[side]]
+        once = ~inner
+        once[inner] = np.flatnonzero(inner) < partner
+        few = len(mesh.elements) <= MOST_ELEMENTS_WITH_EDGES
+        self._wall_elements = element[step]
+        self._walls, self._lines, self._inner = triples[step], triples[step | border], triples[once if few else step]
+
+    def at_points(self, values: AnyArray) -> AnyArray:
+        """Nodal values at the points."""
+        own = values[self._mesh.elements].reshape(-1, *values.shape[1:])
+        flat = self._cells.at_points(own)
+        along = self._cells.edges(own.reshape(len(own), -1), self._walls)
+        on_walls = along.reshape(-1, *values.shape[1:])
+        return np.concatenate([flat, flat, on_walls, on_walls])
+
+    def on_elements(self, values: AnyArray) -> AnyArray:
+        """Values of elements at the points."""
+        flat = self._cells.on_elements(values)
+        on_walls = np.repeat(values[self._wall_elements], self._cells.pieces + 1, axis=0)
+        return np.concatenate([flat, flat, on_walls, on_walls])
+
+    def faces(self, reached: Converged) -> FloatArray:
+        """Positions (2, elements, 8, 3) of the bottom and the top face: x = X + u + z (1 + z φ) d, m."""
+        mesh = self._mesh
+        middle = (mesh.points + reached.state.u)[mesh.elements]
+        director, φ = reached.element_directors(), reached.element_phi()[..., None]
+        return np.stack([middle + z * (1.0 + z * φ) * director for z in np.moveaxis(self._heights, 2, 0)[..., None]])
+
+    def extent(self, reached: Converged) -> FloatArray:
+        """Positions of its nodes in a state."""
+        return self.faces(reached).reshape(-1, 3)
+
+    def placed(self, reached: Converged) -> Placed:
+        """Where it is in a state."""
+        return self.between(*self.faces(reached))
+
+    def between(self, bottom: FloatArray, top: FloatArray) -> Placed:
+        """Where it is with its faces at given positions (elements, 8, 3), m."""
+        below, above = bottom.reshape(-1, 3), top.reshape(-1, 3)
+        surfaces = [self._cells.surface(face) for face in (below, above)]
+        low, high = (self._cells.edges(face, self._walls) for face in (below, above))
+        outward = np.cross(np.gradient(0.5 * (low + high), axis=1), high - low)
+        length = np.linalg.norm(outward, axis=-1, keepdims=True)
+        outward /= np.where(length > 0.0, length, 1.0)
+        lower = np.arange(low[..., 0].size).reshape(low.shape[:2])
+        upper = lower + lower.size
+        quads = np.stack([lower[:, :-1], lower[:, 1:], upper[:, 1:], upper[:, :-1]], axis=-1).reshape(-1, 4)
+        count = len(surfaces[0].points)
+        surface = Surface(
+            np.concatenate([one.points for one in surfaces] + [low.reshape(-1, 3), high.reshape(-1, 3)]),
+            np.concatenate([-surfaces[0].normals, surfaces[1].normals] + 2 * [outward.reshape(-1, 3)]),
+            np.concatenate(
+                [
+                    surfaces[0].triangles[:, ::-1],
+                    surfaces[1].triangles + count,
+                    np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]]) + 2 * count,
+                ]
+            ),
+        )
+        inner, outer = (
+            np.concatenate([self._cells.edges(face, triples) for face in (below, above)])
+            for triples in (self._inner, self._lines)
+        )
+        return Placed(surface, inner, outer)
+
+
+def own_nodes(mesh: Mesh) -> IntArray:
+    """Node numbers (elements, 8) in which no two elements share a node."""
+    own = np.arange(8 * len(mesh.elements)).reshape(-1, 8)
+    own[np.ix_(mesh.triangles, REPEATED)] = own[mesh.triangles, 2:3]
+    return own
