@@ -102,10 +102,22 @@ def from_drawing(
 
 def meshed(plan: Plan, name: str, size: float | None) -> FileMesh:
     """A plan meshed apart; the size in m."""
-    if size is not None and not (math.isfinite(size) and size > 0.0):
+    return apart(mesh_plan, plan, name, chosen_size(size, plan.area), program="gmsh", name=name)
+
+
+def chosen_size(size: float | None, area: float) -> float:
+    """Size of elements, mm, from one in m, or from the area, mm².
+
+    Raises
+    ------
+    InputError
+        Not a positive length.
+    """
+    if size is None:
+        return float(f"{math.sqrt(area / DEFAULT_ELEMENTS):.2g}")
+    if not (math.isfinite(size) and size > 0.0):
         raise InputError(f"size = {size!r} is not allowed; it must be a positive length, in m")
-    chosen = 1e3 * size if size is not None else float(f"{math.sqrt(plan.area / DEFAULT_ELEMENTS):.2g}")
-    return apart(mesh_plan, plan, name, chosen, program="gmsh", name=name)
+    return 1e3 * size
 
 
 def _in_millimetres(drawing: Drawing, unit: str | None, name: str) -> tuple[list[Piece], str]:

@@ -163,10 +163,10 @@ def open_geometry(gmsh: Any, path: pathlib.Path, name: str) -> None:
     if not gmsh.model.getPhysicalGroups(2) and not gmsh.model.getPhysicalGroups(1):
         for dimension in (2, 1):
             for _, entity in gmsh.model.getEntities(dimension):
-                _name_entity(gmsh, dimension, entity)
+                name_entity(gmsh, dimension, entity)
 
 
-def _name_entity(gmsh: Any, dimension: int, entity: int) -> None:
+def name_entity(gmsh: Any, dimension: int, entity: int) -> None:
     """A group by the entity's number, and one by the name that the CAD program gave it."""
     label = gmsh.model.getEntityName(dimension, entity).rpartition("/")[2]
     own = [] if label in ("", "FACE") or label.startswith("Open CASCADE") else [label]
