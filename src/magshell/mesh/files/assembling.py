@@ -40,11 +40,14 @@ class Origin:
         Of the lengths in the file.
     changes : tuple of str
         What is not as the file says: turned, raised, left out.
+    thickness : float or None
+        Of the solid whose mid-surface it is, m.
     """
 
     file: str
     unit: str
     changes: tuple[str, ...] = ()
+    thickness: float | None = None
 
 
 @dataclass(frozen=True, eq=False, repr=False)

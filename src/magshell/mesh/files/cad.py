@@ -142,7 +142,7 @@ def _mesh(path: pathlib.Path, name: str, size: float | None, unit: str, closed: 
         attempts = ATTEMPTS[STRUCTURED:] if structured else ATTEMPTS
         if expected > MANY:
             attempts = tuple(sorted(attempts, key=lambda each: (not each.recombine, each == QUASI_STRUCTURED)))
-        return _best(gmsh, name, unit, closed, attempts)
+        return best(gmsh, name, unit, closed, attempts)
 
 
 def open_geometry(gmsh: Any, path: pathlib.Path, name: str) -> None:
@@ -163,10 +163,10 @@ def open_geometry(gmsh: Any, path: pathlib.Path, name: str) -> None:
     if not gmsh.model.getPhysicalGroups(2) and not gmsh.model.getPhysicalGroups(1):
         for dimension in (2, 1):
             for _, entity in gmsh.model.getEntities(dimension):
-                _name_entity(gmsh, dimension, entity)
+                name_entity(gmsh, dimension, entity)
 
 
-def _name_entity(gmsh: Any, dimension: int, entity: int) -> None:
+def name_entity(gmsh: Any, dimension: int, entity: int) -> None:
     """A group by the entity's number, and one by the name that the CAD program gave it."""
     label = gmsh.model.getEntityName(dimension, entity).rpartition("/")[2]
     own = [] if label in ("", "FACE") or label.startswith("Open CASCADE") else [label]
@@ -225,7 +225,7 @@ def _area(gmsh: Any) -> float:
     return float(np.linalg.norm(diagonal_normals(contents.points[corners[:, :4]]), axis=1).sum())
 
 
-def _best(gmsh: Any, name: str, unit: str, closed: bool, attempts: tuple[Attempt, ...]) -> FileMesh:
+def best(gmsh: Any, name: str, unit: str, closed: bool, attempts: tuple[Attempt, ...]) -> FileMesh:
     """The first good mesh, else the best one; of triangles only if there is no other."""
     best: Candidate | None = None
     reason = f"{name}: gmsh makes no elements of it"

@@ -62,18 +62,19 @@ def read(
             f"{path.with_suffix('.msh').name}, and name that file"
         )
     readable(path)
-    contents = _contents(path, name)
+    contents = contents_of(path, name)
     return assemble(contents, name, agreed(unit, contents.unit, name), second_order, closed)
 
 
-def _contents(path: pathlib.Path, name: str) -> Contents:
+def contents_of(path: pathlib.Path, name: str) -> Contents:
+    """What a file says, whatever its format."""
     reader = _READERS.get(path.suffix.lower())
     if reader is not None:
         return reader(path, name)
     from magshell.mesh.files.other import read_other
 
     own = tuple(ending for ending in _READERS if ending != ".med" or find_spec("h5py"))
-    return read_other(path, name, own, _seconds(path))
+    return read_other(path, name, own, seconds_for(path))
 
 
 def _inp(path: pathlib.Path, name: str) -> Contents:
@@ -99,13 +100,13 @@ def _med(path: pathlib.Path, name: str) -> Contents:
         raise InputError(f'{name}: is read by h5py, which is not installed: pip install "magshell[meshio]"')
     from magshell.mesh.files.med import read_med
 
-    return apart(read_med, path, name, program="h5py", name=name, seconds=_seconds(path))
+    return apart(read_med, path, name, program="h5py", name=name, seconds=seconds_for(path))
 
 
 def _vtk(path: pathlib.Path, name: str) -> Contents:
     from magshell.mesh.files.vtk import read_vtk
 
-    return apart(read_vtk, path, name, program="VTK", name=name, seconds=_seconds(path))
+    return apart(read_vtk, path, name, program="VTK", name=name, seconds=seconds_for(path))
 
 
 def _msh(path: pathlib.Path, name: str) -> Contents:
@@ -126,10 +127,10 @@ def _msh(path: pathlib.Path, name: str) -> Contents:
 
     with tempfile.TemporaryDirectory() as folder:
         copy = put_alone(path, pathlib.Path(folder))
-        return apart(read_with_gmsh, copy, name, program="gmsh", name=name, seconds=_seconds(path))
+        return apart(read_with_gmsh, copy, name, program="gmsh", name=name, seconds=seconds_for(path))
 
 
-def _seconds(path: pathlib.Path) -> int:
+def seconds_for(path: pathlib.Path) -> int:
     """What another program has to read a file: some loop for ever on a damaged one."""
     return SECONDS + path.stat().st_size // BYTES_PER_SECOND
 

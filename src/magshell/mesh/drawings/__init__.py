@@ -1,0 +1,1 @@
+"""Flat outlines: from DXF, SVG and CSV files, and polygons; meshed by gmsh."""

@@ -1,0 +1,1 @@
+"""Mid-surfaces of solids of constant thickness."""
