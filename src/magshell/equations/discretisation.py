@@ -74,8 +74,8 @@ class Discretisation:
         Those that there are.
     reference : Reference
         Arrays of the undeformed shell.
-    materials : sequence of Material
-        Of the regions of the shell.
+    materials, couplings : sequence of Material, sequence of Coupling
+        Laws of the regions of the shell, by the numbers that its levels have.
     carried, free : ndarray of bool, shape (nodes, 10)
         Which unknowns there are, and which of them no support holds.
     """
@@ -85,6 +85,7 @@ class Discretisation:
         self.model, self.mesh = model, model.shell.mesh
         make = make_of(model)
         self.reference, self.materials = reference_of_model(model, make), make.materials
+        self.couplings = make.couplings
         self.shell = ShellTerm(self.reference, len(self.mesh.points), stiffest_of(make))
         self.loads = LoadTerm(model.applied, model.constraints)
         self.terms: Sequence[Term] = (self.shell, self.loads) if model.applied else (self.shell,)

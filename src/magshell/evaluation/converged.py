@@ -10,9 +10,12 @@ import numpy as np
 from magshell.arrays import FloatArray, IntArray
 from magshell.equations.discretisation import Assembly, Discretisation
 from magshell.equations.instant import Instant
-from magshell.evaluation.points import PointFields, evaluate, plane_stress_stretch
+from magshell.evaluation.points import PointFields, evaluate, magnetic_torque, of_couplings, plane_stress_stretch
+from magshell.evaluation.resultants import Resultants
+from magshell.evaluation.strain import FACES, Face
 from magshell.model.course import Loading
 from magshell.shell import rotation
+from magshell.shell.point import INTERNAL
 from magshell.shell.state import State
 
 
@@ -43,10 +46,41 @@ class Converged:
     @cached_property
     def fields(self) -> PointFields:
         """Deformation gradient, micro-rotation and wryness at the points."""
-        reference, φ = self.discretisation.reference, None
-        if reference.body.plane_stress:
-            φ = plane_stress_stretch(reference, self.state, self.discretisation.materials)
-        return evaluate(reference, self.state, φ)
+        return evaluate(self.discretisation.reference, self.state, self._stretch_at_points)
+
+    @cached_property
+    def _stretch_at_points(self) -> FloatArray | None:
+        """Thickness stretch (elements, p) where it is eliminated at the points."""
+        reference = self.discretisation.reference
+        if not reference.body.plane_stress:
+            return None
+        return plane_stress_stretch(reference, self.state, self.discretisation.materials)
+
+    @cached_property
+    def _faces(self) -> dict[str, Face]:
+        return {name: Face(self.discretisation, self.state, self._stretch_at_points, name) for name in FACES}
+
+    @cached_property
+    def _resultants(self) -> Resultants:
+        return Resultants(self.discretisation, self.state, self.fields, self.loading.flux_density)
+
+    def at_face(self, name: str, face: str) -> FloatArray:
+        """A quantity of `Face`, by its name, at the rows of the patches."""
+        return np.asarray(getattr(self._faces[face], name))
+
+    def resultant(self, name: str) -> FloatArray:
+        """A quantity of `Resultants`, by its name, at the rows of the patches."""
+        return np.asarray(getattr(self._resultants, name))
+
+    def energy_density(self) -> FloatArray:
+        """Strain energy per undeformed volume (elements,), J/m³, mean over the element."""
+        return self.energies[:, INTERNAL] / self.discretisation.reference.geometry.volume.sum(axis=(1, 2))
+
+    def torque_density(self) -> FloatArray:
+        """Torque of the field per undeformed volume (elements, 3), N/m², mean over the element."""
+        d = self.discretisation
+        forces = of_couplings(d.reference, d.couplings, self.fields, self.loading.flux_density)
+        return self.mean(magnetic_torque(d.reference, self.fields, forces))
 
     def director(self) -> FloatArray:
         """Director d = D + w (nodes, 3)."""

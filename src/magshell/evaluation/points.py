@@ -8,10 +8,15 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
+from magshell.magnetics.law import OMEGA, WORK, Coupling, M
+from magshell.magnetics.law import evaluate as evaluate_coupling
 from magshell.materials.law import Material
 from magshell.materials.law import evaluate as evaluate_law
+from magshell.model.shell import Shell
 from magshell.shell import rotation
 from magshell.shell.body import Reference
+from magshell.shell.geometry import SectionGeometry
+from magshell.shell.rotation import cross
 from magshell.shell.state import State
 
 
@@ -33,8 +38,14 @@ class PointFields(NamedTuple):
     kappa: FloatArray
 
 
-def evaluate(reference: Reference, state: State, stretch_at_points: FloatArray | None = None) -> PointFields:
-    """Deformation gradient, micro-rotation and wryness; φ from the nodes, or as given (elements, p)."""
+def evaluate(
+    reference: Reference, state: State, stretch_at_points: FloatArray | None = None, heights: FloatArray | None = None
+) -> PointFields:
+    """Deformation gradient, micro-rotation and wryness.
+
+    φ is that of the nodes, or as given (elements, p); the levels are those of the section, or at heights over the
+    mid-surface (elements, k), m.
+    """
     geometry, shape, elements = reference.geometry, reference.shape, reference.body.elements
     rest, stretch = elements[:, : shape.director.shape[-1]], elements[:, : shape.phi.shape[-1]]
     a = geometry.A + np.einsum("epan,enx->epax", shape.u, state.u[elements])
@@ -42,11 +53,14 @@ def evaluate(reference: Reference, state: State, stretch_at_points: FloatArray |
     d, dd = geometry.D + w[:, :, 0], geometry.dD + w[:, :, 1:]
     φ = np.einsum("epn,en->ep", shape.phi, state.phi[stretch]) if stretch_at_points is None else stretch_at_points
     enhanced = np.einsum("epam,emx->epax", shape.enhancement, state.alpha)
-    z = geometry.z
+    z, G = geometry.z, geometry.G
+    if heights is not None:
+        z = np.broadcast_to(heights[:, None], (*a.shape[:2], heights.shape[1]))
+        G = dual_base(geometry, z)
     g_tangent = a[:, :, None] + z[..., None, None] * dd[:, :, None]
     g_3 = (1.0 + 2.0 * z * φ[..., None])[..., None] * d[:, :, None]
     g = np.concatenate([g_tangent, g_3[:, :, :, None]], axis=3) + enhanced[:, :, None]
-    F = np.einsum("epkax,epkay->epkxy", g, geometry.G)
+    F = np.einsum("epkax,epkay->epkxy", g, G)
     if not reference.body.layout.q:
         R = np.broadcast_to(np.eye(3), (*a.shape[:2], 3, 3))
         return PointFields(F, R, np.zeros_like(a))
@@ -56,6 +70,13 @@ def evaluate(reference: Reference, state: State, stretch_at_points: FloatArray |
     length = np.sum(q * q, axis=-1)
     kappa = 2.0 * rotation.product(rotation.conjugate(q)[:, :, None], dq)[..., 1:] / length[..., None, None]
     return PointFields(F, rotation.matrix(q), kappa)
+
+
+def dual_base(geometry: SectionGeometry, z: FloatArray) -> FloatArray:
+    """Dual of (A_1 + z D,1, A_2 + z D,2, D) at levels z (elements, p, k): rows (elements, p, k, 3, 3), 1/m."""
+    covariant = geometry.A[:, :, None] + z[..., None, None] * geometry.dD[:, :, None]
+    director = np.broadcast_to(geometry.D[:, :, None, None], (*z.shape, 1, 3))
+    return np.asarray(np.swapaxes(np.linalg.inv(np.concatenate([covariant, director], axis=3)), -1, -2))
 
 
 def micropolar_stretch(fields: PointFields) -> FloatArray:
@@ -71,6 +92,30 @@ def of_materials(reference: Reference, materials: Sequence[Material], U: FloatAr
         at = made == number
         W[at], P[at], C[at] = evaluate_law(material, U[at])
     return W, P, C
+
+
+def of_couplings(
+    reference: Reference, couplings: Sequence[Coupling], fields: PointFields, flux_density: FloatArray
+) -> FloatArray:
+    """Forces (e, p, k, 9) of the coupling laws that hold at the points, on m = F B̃, the spin and the position."""
+    made, remanence = reference.body.levels["coupling"], reference.remanence
+    m = np.einsum("epkxy,epky->epkx", fields.F, remanence)
+    n = np.einsum("epxy,epky->epkx", fields.R, remanence)
+    forces = np.empty((*made.shape, WORK))
+    for number, coupling in enumerate(couplings):
+        at = made == number
+        forces[at] = evaluate_coupling(coupling, m[at], n[at], flux_density)[1]
+    return forces
+
+
+def magnetic_torque(reference: Reference, fields: PointFields, forces: FloatArray) -> FloatArray:
+    """Torque of the field per undeformed volume (e, p, k, 3), N/m².
+
+    The forces f on m = F B̃ and c on the spin do the work -(f · δm + c · δω) in a rigid rotation: a torque
+    -(m × f + c), which is (1/mu0) m × B for the couple.
+    """
+    m = np.einsum("epkxy,epky->epkx", fields.F, reference.remanence)
+    return -(cross(m, forces[..., M : M + 3]) + forces[..., OMEGA : OMEGA + 3])
 
 
 def plane_stress_stretch(reference: Reference, state: State, materials: Sequence[Material]) -> FloatArray:
@@ -101,3 +146,11 @@ def director(reference: Reference, state: State) -> FloatArray:
     functions = reference.shape.director
     rest = reference.body.elements[:, : functions.shape[-1]]
     return np.asarray(reference.geometry.D + np.einsum("epn,enx->epx", functions[:, :, 0], state.w[rest]))
+
+
+def face_heights(shell: Shell) -> FloatArray:
+    """Heights of the upper face, the middle and the lower face of each element over the mid-surface (elements, 3), m."""
+    heights = np.empty((len(shell.mesh.elements), 3))
+    for region in shell.regions:
+        heights[region.elements] = region.thickness * np.array([0.5, 0.0, -0.5])
+    return heights

@@ -1,0 +1,118 @@
+"""From the integration points to the nodes: extrapolated in each element, averaged over smooth patches.
+
+Tensors are carried from a point to a node in frames that turn with the surface normal and about nothing else, so that
+what is constant along a curved surface stays so, whatever the mesh.
+"""
+
+from __future__ import annotations
+
+import weakref
+from typing import NamedTuple
+
+import numpy as np
+
+from magshell.arrays import FloatArray
+from magshell.equations.discretisation import Discretisation
+from magshell.evaluation.extrapolation import to_nodes
+from magshell.evaluation.patches import Patches, patches_of
+
+PARALLEL = np.sin(np.radians(0.1))
+"""A direction that is closer to the normal than this has no projection on the surface."""
+
+
+class Recovery(NamedTuple):
+    """What recovering needs of the undeformed shell.
+
+    Attributes
+    ----------
+    patches : Patches
+    points : ndarray, shape (elements, p, 3, 3)
+        Frame at each point: its rows are two tangents of the surface and its normal.
+    axes : ndarray, shape (rows, 3, 3)
+        Local axes of each row of the patches, as rows.
+    to_axes : ndarray, shape (elements, 8, 3, 3)
+        From components in the frames of the points to components in the local axes of a node.
+    to_nodes : ndarray, shape (elements, 8, p)
+        From values at the points to values at the nodes.
+    """
+
+    patches: Patches
+    points: FloatArray
+    axes: FloatArray
+    to_axes: FloatArray
+    to_nodes: FloatArray
+
+    def scalars(self, values: FloatArray) -> FloatArray:
+        """Values at the points (elements, p, ...) at the rows (rows, ...)."""
+        return self._averaged(np.einsum("enp,ep...->en...", self.to_nodes, values))
+
+    def vectors(self, values: FloatArray) -> FloatArray:
+        """Components in the frames of the points (elements, p, 3) as components in the local axes (rows, 3)."""
+        nodal = np.matmul(self.to_nodes, values)
+        return self._averaged(np.matmul(self.to_axes, nodal[..., None])[..., 0])
+
+    def tensors(self, values: FloatArray) -> FloatArray:
+        """Components in the frames of the points (elements, p, 3, 3) as components in the local axes (rows, 3, 3)."""
+        nodal = np.matmul(self.to_nodes, values.reshape(*values.shape[:2], 9)).reshape(*self.to_axes.shape)
+        return self._averaged(self.to_axes @ nodal @ np.swapaxes(self.to_axes, -1, -2))
+
+    def _averaged(self, nodal: FloatArray) -> FloatArray:
+        averaged = self.patches.mean @ nodal.reshape(self.patches.elements.size, -1)
+        return np.asarray(averaged).reshape(-1, *nodal.shape[2:])
+
+
+_kept: weakref.WeakKeyDictionary[Discretisation, Recovery] = weakref.WeakKeyDictionary()
+
+
+def recovery_of(discretisation: Discretisation) -> Recovery:
+    """What recovering needs, made once for each discretisation."""
+    if discretisation not in _kept:
+        _kept[discretisation] = _made(discretisation)
+    return _kept[discretisation]
+
+
+def _made(discretisation: Discretisation) -> Recovery:
+    mesh, geometry = discretisation.mesh, discretisation.reference.geometry
+    patches = patches_of(discretisation)
+    normals = _unit(np.cross(geometry.A[:, :, 0], geometry.A[:, :, 1]))
+    middle = _unit(normals.sum(axis=1))
+    frame = local_axes(middle, geometry.A[:, 0, 0])[:, None]
+    at_points = frame @ _turned(middle[:, None], normals)
+    at_nodes = frame @ _turned(middle[:, None], patches.normals[patches.elements])
+    axes = local_axes(patches.normals, np.asarray(discretisation.model.local_axis, dtype=float))
+    to_axes = axes[patches.elements] @ np.swapaxes(at_nodes, -1, -2)
+    matrices = to_nodes(discretisation.model.shell.element, mesh.points[mesh.elements])
+    return Recovery(patches, at_points, axes, to_axes, matrices)
+
+
+def local_axes(normals: FloatArray, direction: FloatArray) -> FloatArray:
+    """Axes (n, 3, 3), as rows: the direction projected on the surface, the normal times it, and the normal (n, 3).
+
+    Where the direction is normal to the surface X3 takes its place, or X1 where that is normal too.
+    """
+    first = np.zeros_like(normals)
+    length = np.zeros(len(normals))
+    for one in (direction, (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)):
+        unit = np.broadcast_to(_unit(np.asarray(one, dtype=float)), normals.shape)
+        open_ = length <= PARALLEL
+        inside = unit - np.sum(unit * normals, axis=1, keepdims=True) * normals
+        first[open_] = inside[open_]
+        length = np.linalg.norm(first, axis=1)
+    first /= length[:, None]
+    return np.stack([first, np.cross(normals, first), normals], axis=1)
+
+
+def _turned(before: FloatArray, after: FloatArray) -> FloatArray:
+    """Transposed matrices (..., 3, 3) of the smallest rotations that take unit vectors `before` to `after`."""
+    before, after = np.broadcast_arrays(before, after)
+    v, cosine = np.cross(before, after), np.sum(before * after, axis=-1)
+    cross = np.zeros((*v.shape, 3))
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        cross[..., j, k], cross[..., k, j] = -v[..., i], v[..., i]
+    turn = np.eye(3) + cross + cross @ cross / (1.0 + cosine)[..., None, None]
+    return np.asarray(np.swapaxes(turn, -1, -2))
+
+
+def _unit(vectors: FloatArray) -> FloatArray:
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
