@@ -7,6 +7,7 @@ Tables of rows begin with one row for each node of the mesh, in its order; the f
 
 from __future__ import annotations
 
+import weakref
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,7 +15,6 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
 from magshell.arrays import AnyArray, FloatArray, IntArray
-from magshell.equations.discretisation import Discretisation
 from magshell.evaluation.extrapolation import to_nodes
 from magshell.mesh.edges import SIDES, find_edges, is_triangle
 from magshell.model.shell import Shell
@@ -51,9 +51,18 @@ class Patches(NamedTuple):
     first: IntArray
 
 
-def patches_of(discretisation: Discretisation) -> Patches:
-    """The patches of a model."""
-    mesh, shell = discretisation.mesh, discretisation.model.shell
+_kept: weakref.WeakKeyDictionary[Shell, Patches] = weakref.WeakKeyDictionary()
+
+
+def patches_of(shell: Shell) -> Patches:
+    """The patches of a shell, found once."""
+    if shell not in _kept:
+        _kept[shell] = _found(shell)
+    return _kept[shell]
+
+
+def _found(shell: Shell) -> Patches:
+    mesh = shell.mesh
     elements, normals = mesh.elements, corner_normals(mesh.points, mesh.elements)
     count = elements.size
     one, other = _joined(elements, _smooth(elements, normals, makes(shell), _remanence(shell)))

@@ -73,7 +73,7 @@ def recovery_of(discretisation: Discretisation) -> Recovery:
 
 def _made(discretisation: Discretisation) -> Recovery:
     mesh, geometry = discretisation.mesh, discretisation.reference.geometry
-    patches = patches_of(discretisation)
+    patches = patches_of(discretisation.model.shell)
     normals = _unit(np.cross(geometry.A[:, :, 0], geometry.A[:, :, 1]))
     middle = _unit(normals.sum(axis=1))
     frame = local_axes(middle, geometry.A[:, 0, 0])[:, None]
