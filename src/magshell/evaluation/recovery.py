@@ -2,6 +2,10 @@
 
 Tensors are carried from a point to a node in frames that turn with the surface normal and about nothing else, so that
 what is constant along a curved surface stays so, whatever the mesh.
+
+What stretches and bends the surface is good at the points, and extrapolated from there. Transverse shear is the next
+derivative: only its mean over an element is good. So a linear field is laid through the mean of each element and those
+of its neighbours in the patch. Both are of second order at inner nodes and at the edge.
 """
 
 from __future__ import annotations
@@ -13,7 +17,9 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.equations.discretisation import Discretisation
+from magshell.evaluation import neighbours
 from magshell.evaluation.extrapolation import to_nodes
+from magshell.evaluation.neighbours import Neighbours, turned
 from magshell.evaluation.patches import Patches, patches_of
 
 PARALLEL = np.sin(np.radians(0.1))
@@ -34,6 +40,7 @@ class Recovery(NamedTuple):
         From components in the frames of the points to components in the local axes of a node.
     to_nodes : ndarray, shape (elements, 8, p)
         From values at the points to values at the nodes.
+    neighbours : Neighbours
     """
 
     patches: Patches
@@ -41,19 +48,26 @@ class Recovery(NamedTuple):
     axes: FloatArray
     to_axes: FloatArray
     to_nodes: FloatArray
+    neighbours: Neighbours
 
-    def scalars(self, values: FloatArray) -> FloatArray:
-        """Values at the points (elements, p, ...) at the rows (rows, ...)."""
-        return self._averaged(np.einsum("enp,ep...->en...", self.to_nodes, values))
+    def vectors(self, values: FloatArray, shear: bool = True) -> FloatArray:
+        """Components in the frames of the points (elements, p, 3) as components in the local axes (rows, 3).
 
-    def vectors(self, values: FloatArray) -> FloatArray:
-        """Components in the frames of the points (elements, p, 3) as components in the local axes (rows, 3)."""
+        Of the rotations of transverse shear the first two are good in the mean only.
+        """
         nodal = np.matmul(self.to_nodes, values)
+        if shear:
+            nodal[..., :2] = self.neighbours.at_nodes(values[..., :2])
         return self._averaged(np.matmul(self.to_axes, nodal[..., None])[..., 0])
 
     def tensors(self, values: FloatArray) -> FloatArray:
-        """Components in the frames of the points (elements, p, 3, 3) as components in the local axes (rows, 3, 3)."""
+        """Components in the frames of the points (elements, p, 3, 3) as components in the local axes (rows, 3, 3).
+
+        The components 31, 32, 13 and 23 are those of transverse shear.
+        """
         nodal = np.matmul(self.to_nodes, values.reshape(*values.shape[:2], 9)).reshape(*self.to_axes.shape)
+        nodal[..., 2, :2] = self.neighbours.at_nodes(values[..., 2, :2])
+        nodal[..., :2, 2] = self.neighbours.at_nodes(values[..., :2, 2])
         return self._averaged(self.to_axes @ nodal @ np.swapaxes(self.to_axes, -1, -2))
 
     def _averaged(self, nodal: FloatArray) -> FloatArray:
@@ -76,13 +90,14 @@ def _made(discretisation: Discretisation) -> Recovery:
     patches = patches_of(discretisation.model.shell)
     normals = _unit(np.cross(geometry.A[:, :, 0], geometry.A[:, :, 1]))
     middle = _unit(normals.sum(axis=1))
-    frame = local_axes(middle, geometry.A[:, 0, 0])[:, None]
-    at_points = frame @ _turned(middle[:, None], normals)
-    at_nodes = frame @ _turned(middle[:, None], patches.normals[patches.elements])
+    frame = local_axes(middle, geometry.A[:, 0, 0])
+    at_points = frame[:, None] @ turned(middle[:, None], normals)
+    at_nodes = frame[:, None] @ turned(middle[:, None], patches.normals[patches.elements])
     axes = local_axes(patches.normals, np.asarray(discretisation.model.local_axis, dtype=float))
     to_axes = axes[patches.elements] @ np.swapaxes(at_nodes, -1, -2)
-    matrices = to_nodes(discretisation.model.shell.element, mesh.points[mesh.elements])
-    return Recovery(patches, at_points, axes, to_axes, matrices)
+    element, coordinates = discretisation.model.shell.element, mesh.points[mesh.elements]
+    matrices = to_nodes(element, coordinates)
+    return Recovery(patches, at_points, axes, to_axes, matrices, neighbours.found(element, coordinates, frame, patches))
 
 
 def local_axes(normals: FloatArray, direction: FloatArray) -> FloatArray:
@@ -100,18 +115,6 @@ def local_axes(normals: FloatArray, direction: FloatArray) -> FloatArray:
         length = np.linalg.norm(first, axis=1)
     first /= length[:, None]
     return np.stack([first, np.cross(normals, first), normals], axis=1)
-
-
-def _turned(before: FloatArray, after: FloatArray) -> FloatArray:
-    """Transposed matrices (..., 3, 3) of the smallest rotations that take unit vectors `before` to `after`."""
-    before, after = np.broadcast_arrays(before, after)
-    v, cosine = np.cross(before, after), np.sum(before * after, axis=-1)
-    cross = np.zeros((*v.shape, 3))
-    for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
-        cross[..., j, k], cross[..., k, j] = -v[..., i], v[..., i]
-    turn = np.eye(3) + cross + cross @ cross / (1.0 + cosine)[..., None, None]
-    return np.asarray(np.swapaxes(turn, -1, -2))
 
 
 def _unit(vectors: FloatArray) -> FloatArray:

@@ -107,7 +107,7 @@ class Resultants:
     def axes(self) -> FloatArray:
         """Deformed local axes (rows, 3, 3), as rows, in X1, X2, X3."""
         recovery = self._recovery
-        turned = [recovery.vectors(self._axes[:, :, i]) for i in range(3)]
+        turned = [recovery.vectors(self._axes[:, :, i], shear=False) for i in range(3)]
         left, _, right = np.linalg.svd(np.stack(turned, axis=-1))
         return np.asarray(left @ right)
 
