@@ -65,10 +65,10 @@ def solved(model: ms.Model) -> Converged:
 
 
 def at(reached: Converged, name: str, position: Sequence[float]) -> float:
-    """An output at a node, per load factor of one."""
+    """An output at a node."""
     output, component = find(name)
     values = output.evaluate(reached)[reached.mesh.node_at(np.array(position, dtype=float))]
-    return float(values if component is None else values[component - 1]) / SMALL
+    return float(values if component is None else values[component - 1])
 
 
 def membrane(count: int) -> list[Value]:
@@ -85,7 +85,7 @@ def membrane(count: int) -> list[Value]:
     supports = [ms.Prescribe(side, field, i) for side, i in (("left", 1), ("right", 2)) for field in ("u", "w")]
     supports.append(ms.Prescribe("left", "u", 3))
     reached = solved(ms.Model(shell, supports, loads=[NodalForces("top", forces)]))
-    stress = at(reached, "s22_top", (2.0, 0.0, 0.0))
+    stress = at(reached, "s22_top", (2.0, 0.0, 0.0)) / SMALL
     return [Value("LE1", "σyy at D", "MPa", 1e-6 * stress, 92.66, 5e-3)]
 
 
@@ -120,7 +120,7 @@ def plate(count: int, clamped: bool, ratio: float = 200.0) -> list[Value]:
             supports += [ms.Prescribe(side, "u", 3), ms.Prescribe(side, "w", along)]
     reached = solved(ms.Model(shell, supports, loads=[ms.Traction("plate", (0.0, 0.0, q))]))
     D = young * h**3 / (12.0 * (1.0 - 0.3**2))
-    scale = SMALL / q
+    scale = 1.0 / q
     centre, middle, corner = (0.0, 0.0, 0.0), (0.5, 0.0, 0.0), (0.5, 0.5, 0.0)
     w = at(reached, "u3", centre) * D * scale
     M = at(reached, "M11", centre) * scale
@@ -141,3 +141,68 @@ def plate(count: int, clamped: bool, ratio: float = 200.0) -> list[Value]:
         Value(name, "corner force 2 M12", "q a²", 2.0 * at(reached, "M12", corner) * scale, 0.0649647, 1e-2),
         Value(name, "edge reaction Q1 + M12,2", "q a", reaction, 0.4205, 1e-2),
     ]
+
+
+def clamped_cylinder(count: int) -> list[Value]:
+    """A long clamped cylinder under pressure, a sector of it; `count` elements along eight lengths 1/β."""
+    radius, h, young, nu = 1.0, 1e-3, 1e9, 0.3
+    beta = (3.0 * (1.0 - nu**2)) ** 0.25 / np.sqrt(radius * h)
+    mesh = ms.mesh.cylinder(radius, 8.0 / beta, (2, count), angle=(-2.0, 2.0), axis=(1, 0, 0), zero=(0, 0, 1))
+    mesh = Mesh(mesh.points, mesh.elements, {"all": np.arange(len(mesh.elements))}, dict(mesh.edge_groups))
+    p = SMALL * young * h / radius
+    angle = np.radians(2.0)
+    supports = [
+        ms.Clamp("start"),
+        ms.SymmetryPlane("angle-start", (0.0, np.cos(angle), -np.sin(angle))),
+        ms.SymmetryPlane("angle-stop", (0.0, np.cos(angle), np.sin(angle))),
+    ]
+    shell = ms.Shell(mesh, h, classical(young, nu), micro_rotation=False)
+    reached = solved(ms.Model(shell, supports, loads=[ms.Pressure("all", p)]))
+    end, scale = mesh.points[np.argmin(np.abs(mesh.points - [0, 0, radius]).sum(axis=1))], 1.0 / p
+    name = "clamped cylinder"
+    return [
+        Value(name, "moment at the clamp", "p/2β²", abs(at(reached, "M11", end)) * scale * 2.0 * beta**2, 1.0, 1e-2),
+        Value(name, "shear force at the clamp", "p/β", abs(at(reached, "Q1", end)) * scale * beta, 1.0, 1e-2),
+    ]
+
+
+def roof(count: int) -> list[Value]:
+    """The roof of Scordelis and Lo, a quarter of it."""
+    mesh = ms.mesh.cylinder(25.0, 25.0, (count, count), angle=(0.0, 40.0), axis=(0, 1, 0), zero=(0, 0, 1))
+    mesh = Mesh(mesh.points, mesh.elements, {"all": np.arange(len(mesh.elements))}, dict(mesh.edge_groups))
+    shell = ms.Shell(mesh, 0.25, classical(4.32e8, 0.0), micro_rotation=False)
+    supports = [
+        ms.SymmetryPlane("start", (0, 1, 0)),
+        ms.SymmetryPlane("angle-start", (1, 0, 0)),
+        ms.Prescribe("end", "u", 1),
+        ms.Prescribe("end", "u", 3),
+    ]
+    reached = solved(ms.Model(shell, supports, loads=[ms.Traction("all", (0.0, 0.0, -90.0 * SMALL))]))
+    side = mesh.points[mesh.nodes_of("start")]
+    place = side[np.argmin(side[:, 2])]
+    u = at(reached, "u3", place) / SMALL
+    return [
+        Value("Scordelis–Lo roof", "u3 at the middle of the side, without shear", "ft", u, -0.300601, 1e-2),
+        Value("Scordelis–Lo roof", "the same, customary", "ft", u, -0.3024, 1e-2),
+    ]
+
+
+def pinched_cylinder(count: int) -> list[Value]:
+    """A cylinder with diaphragms at its ends, pinched by two forces; an eighth of it."""
+    radius, h, young = 300.0, 3.0, 3e6
+    mesh = ms.mesh.cylinder(radius, 300.0, (count, count), angle=(0.0, 90.0), axis=(1, 0, 0), zero=(0, 0, 1))
+    place = mesh.points[mesh.node_at(np.array([0.0, 0.0, radius]))]
+    mesh = Mesh(mesh.points, mesh.elements, {}, dict(mesh.edge_groups), {"top": [mesh.node_at(place)]})
+    shell = ms.Shell(mesh, h, classical(young, 0.3), micro_rotation=False)
+    turned = float(np.sign(mesh.points[mesh.nodes_of("angle-stop"), 1][0]))
+    supports = [
+        ms.SymmetryPlane("start", (1, 0, 0)),
+        ms.SymmetryPlane("angle-start", (0, 1, 0)),
+        ms.SymmetryPlane("angle-stop", (0, 0, 1)),
+        ms.Prescribe("end", "u", 2),
+        ms.Prescribe("end", "u", 3),
+    ]
+    assert turned
+    reached = solved(ms.Model(shell, supports, loads=[ms.Force("top", (0.0, 0.0, -0.25))]))
+    w = -at(reached, "u3", place) * young * h
+    return [Value("pinched cylinder", "displacement under the force", "P/Eh", w, 164.5, 3e-3)]

@@ -12,7 +12,7 @@ from magshell.equations.discretisation import Assembly, Discretisation
 from magshell.equations.instant import Instant
 from magshell.evaluation.points import PointFields, evaluate, magnetic_torque, of_couplings, plane_stress_stretch
 from magshell.evaluation.resultants import Resultants
-from magshell.evaluation.strain import FACES, Face
+from magshell.evaluation.strain import FACES, Deformation, Face
 from magshell.model.course import Loading
 from magshell.shell import rotation
 from magshell.shell.point import INTERNAL
@@ -57,12 +57,16 @@ class Converged:
         return plane_stress_stretch(reference, self.state, self.discretisation.materials)
 
     @cached_property
+    def _deformation(self) -> Deformation:
+        return Deformation(self.discretisation, self.state, self._stretch_at_points)
+
+    @cached_property
     def _faces(self) -> dict[str, Face]:
-        return {name: Face(self.discretisation, self.state, self._stretch_at_points, name) for name in FACES}
+        return {name: Face(self._deformation, name) for name in FACES}
 
     @cached_property
     def _resultants(self) -> Resultants:
-        return Resultants(self.discretisation, self.state, self.fields, self.loading.flux_density)
+        return Resultants(self._deformation, self.state, self.fields, self.loading.flux_density)
 
     def at_face(self, name: str, face: str) -> FloatArray:
         """A quantity of `Face`, by its name, at the rows of the patches."""

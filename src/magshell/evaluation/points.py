@@ -38,13 +38,19 @@ class PointFields(NamedTuple):
     kappa: FloatArray
 
 
+class Levels(NamedTuple):
+    """Heights z over the mid-surface (elements, p, k), m, and the dual base there (elements, p, k, 3, 3), 1/m."""
+
+    z: FloatArray
+    G: FloatArray
+
+
 def evaluate(
-    reference: Reference, state: State, stretch_at_points: FloatArray | None = None, heights: FloatArray | None = None
+    reference: Reference, state: State, stretch_at_points: FloatArray | None = None, levels: Levels | None = None
 ) -> PointFields:
     """Deformation gradient, micro-rotation and wryness.
 
-    φ is that of the nodes, or as given (elements, p); the levels are those of the section, or at heights over the
-    mid-surface (elements, k), m.
+    φ is that of the nodes, or as given (elements, p); the levels are by default those of the section.
     """
     geometry, shape, elements = reference.geometry, reference.shape, reference.body.elements
     rest, stretch = elements[:, : shape.director.shape[-1]], elements[:, : shape.phi.shape[-1]]
@@ -53,10 +59,7 @@ def evaluate(
     d, dd = geometry.D + w[:, :, 0], geometry.dD + w[:, :, 1:]
     φ = np.einsum("epn,en->ep", shape.phi, state.phi[stretch]) if stretch_at_points is None else stretch_at_points
     enhanced = np.einsum("epam,emx->epax", shape.enhancement, state.alpha)
-    z, G = geometry.z, geometry.G
-    if heights is not None:
-        z = np.broadcast_to(heights[:, None], (*a.shape[:2], heights.shape[1]))
-        G = dual_base(geometry, z)
+    z, G = (geometry.z, geometry.G) if levels is None else levels
     g_tangent = a[:, :, None] + z[..., None, None] * dd[:, :, None]
     g_3 = (1.0 + 2.0 * z * φ[..., None])[..., None] * d[:, :, None]
     g = np.concatenate([g_tangent, g_3[:, :, :, None]], axis=3) + enhanced[:, :, None]
@@ -72,11 +75,13 @@ def evaluate(
     return PointFields(F, rotation.matrix(q), kappa)
 
 
-def dual_base(geometry: SectionGeometry, z: FloatArray) -> FloatArray:
-    """Dual of (A_1 + z D,1, A_2 + z D,2, D) at levels z (elements, p, k): rows (elements, p, k, 3, 3), 1/m."""
+def faces(shell: Shell, geometry: SectionGeometry) -> Levels:
+    """The upper face, the middle and the lower face at the points: three levels."""
+    z = np.broadcast_to(face_heights(shell)[:, None], (*geometry.A.shape[:2], 3))
     covariant = geometry.A[:, :, None] + z[..., None, None] * geometry.dD[:, :, None]
     director = np.broadcast_to(geometry.D[:, :, None, None], (*z.shape, 1, 3))
-    return np.asarray(np.swapaxes(np.linalg.inv(np.concatenate([covariant, director], axis=3)), -1, -2))
+    base = np.concatenate([covariant, director], axis=3)
+    return Levels(z, np.ascontiguousarray(np.swapaxes(np.linalg.inv(base), -1, -2)))
 
 
 def micropolar_stretch(fields: PointFields) -> FloatArray:

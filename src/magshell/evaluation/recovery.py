@@ -17,10 +17,11 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.equations.discretisation import Discretisation
-from magshell.evaluation import neighbours
+from magshell.evaluation import neighbours, points
 from magshell.evaluation.extrapolation import to_nodes
 from magshell.evaluation.neighbours import Neighbours, turned
 from magshell.evaluation.patches import Patches, patches_of
+from magshell.evaluation.points import Levels
 
 PARALLEL = np.sin(np.radians(0.1))
 """A direction that is closer to the normal than this has no projection on the surface."""
@@ -41,6 +42,8 @@ class Recovery(NamedTuple):
     to_nodes : ndarray, shape (elements, 8, p)
         From values at the points to values at the nodes.
     neighbours : Neighbours
+    faces : Levels
+        Upper face, middle and lower face at the points.
     """
 
     patches: Patches
@@ -49,6 +52,7 @@ class Recovery(NamedTuple):
     to_axes: FloatArray
     to_nodes: FloatArray
     neighbours: Neighbours
+    faces: Levels
 
     def vectors(self, values: FloatArray, shear: bool = True) -> FloatArray:
         """Components in the frames of the points (elements, p, 3) as components in the local axes (rows, 3).
@@ -95,9 +99,16 @@ def _made(discretisation: Discretisation) -> Recovery:
     at_nodes = frame[:, None] @ turned(middle[:, None], patches.normals[patches.elements])
     axes = local_axes(patches.normals, np.asarray(discretisation.model.local_axis, dtype=float))
     to_axes = axes[patches.elements] @ np.swapaxes(at_nodes, -1, -2)
-    element, coordinates = discretisation.model.shell.element, mesh.points[mesh.elements]
-    matrices = to_nodes(element, coordinates)
-    return Recovery(patches, at_points, axes, to_axes, matrices, neighbours.found(element, coordinates, frame, patches))
+    shell, coordinates = discretisation.model.shell, mesh.points[mesh.elements]
+    return Recovery(
+        patches,
+        at_points,
+        axes,
+        to_axes,
+        to_nodes(shell.element, coordinates),
+        neighbours.found(shell.element, coordinates, frame, patches),
+        points.faces(shell, geometry),
+    )
 
 
 def local_axes(normals: FloatArray, direction: FloatArray) -> FloatArray:

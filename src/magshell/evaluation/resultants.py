@@ -18,11 +18,9 @@ from functools import cached_property
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.equations.discretisation import Discretisation
 from magshell.evaluation import points
 from magshell.evaluation.points import PointFields
-from magshell.evaluation.recovery import recovery_of
-from magshell.evaluation.strain import deformed_axes
+from magshell.evaluation.strain import Deformation
 from magshell.magnetics.law import M
 from magshell.shell.rotation import cross
 from magshell.shell.state import State
@@ -33,7 +31,7 @@ class Resultants:
 
     Parameters
     ----------
-    discretisation : Discretisation
+    deformation : Deformation
     state : State
     fields : PointFields
         At the levels of the section.
@@ -42,10 +40,11 @@ class Resultants:
     """
 
     def __init__(
-        self, discretisation: Discretisation, state: State, fields: PointFields, flux_density: FloatArray
+        self, deformation: Deformation, state: State, fields: PointFields, flux_density: FloatArray
     ) -> None:
+        discretisation = deformation.discretisation
         self._discretisation, self._state, self._fields = discretisation, state, fields
-        self._flux_density, self._recovery = flux_density, recovery_of(discretisation)
+        self._flux_density, self._recovery, self._axes = flux_density, deformation.recovery, deformation.axes
         geometry, frames = discretisation.reference.geometry, self._recovery.points
         coordinates = discretisation.mesh.points[discretisation.mesh.elements]
         _, weights = discretisation.model.shell.element.integration(coordinates)
@@ -62,14 +61,6 @@ class Resultants:
         forces = points.of_couplings(d.reference, d.couplings, fields, self._flux_density)[..., M : M + 3]
         T = P + forces[..., None] * d.reference.remanence[..., None, :]
         return T * (d.reference.geometry.volume * self._per_area[..., None])[..., None, None]
-
-    @cached_property
-    def _axes(self) -> FloatArray:
-        """Deformed axes at the points (elements, p, 3, 3), as columns, in global components."""
-        d, frames = self._discretisation, self._recovery.points
-        phi = np.zeros(frames.shape[:2])
-        F = points.evaluate(d.reference, self._state, phi, np.zeros((len(frames), 1))).F[:, :, 0]
-        return deformed_axes(F @ np.swapaxes(frames, -1, -2))
 
     def _across(self, weights: FloatArray) -> FloatArray:
         """∫ weights T G^β dz for the sections with the normals E_b: vectors (elements, p, 3, b)."""

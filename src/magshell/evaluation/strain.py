@@ -46,8 +46,8 @@ class Strained(NamedTuple):
     shown: FloatArray
 
 
-class Face:
-    """Strain and stress at a face of a deformed shell; each is computed when first asked for.
+class Deformation:
+    """A deformed shell at the points, on the frames of `Recovery.points`.
 
     Parameters
     ----------
@@ -55,30 +55,49 @@ class Face:
     state : State
     phi : ndarray, shape (elements, p), or None
         Thickness stretch where it is eliminated at the points.
+
+    Attributes
+    ----------
+    recovery : Recovery
+    F : ndarray, shape (3, elements, p, 3, 3)
+        At the upper face, in the middle and at the lower face: images of the axes of the frames, as columns.
+    back : ndarray, shape (elements, p, 3, 3)
+        The inverse of the micro-rotation, from global components to components in the frames.
+    axes : ndarray, shape (elements, p, 3, 3)
+        Deformed axes, as columns.
+    """
+
+    def __init__(self, discretisation: Discretisation, state: State, phi: FloatArray | None) -> None:
+        self.discretisation, self.recovery = discretisation, recovery_of(discretisation)
+        fields = points.evaluate(discretisation.reference, state, phi, self.recovery.faces)
+        frames = self.recovery.points
+        self.F = np.moveaxis(fields.F, 2, 0) @ np.swapaxes(frames, -1, -2)
+        self.back = frames @ np.swapaxes(fields.R, -1, -2)
+        self.axes = deformed_axes(self.F[FACES.index("middle")])
+
+
+class Face:
+    """Strain and stress at a face of a deformed shell; each is computed when first asked for.
+
+    Parameters
+    ----------
+    deformation : Deformation
     name : {"top", "middle", "bottom"}
     """
 
-    def __init__(self, discretisation: Discretisation, state: State, phi: FloatArray | None, name: str) -> None:
-        self._discretisation, self._state, self._phi = discretisation, state, phi
-        self._number, self._recovery = FACES.index(name), recovery_of(discretisation)
+    def __init__(self, deformation: Deformation, name: str) -> None:
+        self._deformation, self._number = deformation, FACES.index(name)
+        self._discretisation, self._recovery = deformation.discretisation, deformation.recovery
 
     @cached_property
     def strained(self) -> Strained:
         """What is extrapolated."""
-        reference = self._discretisation.reference
-        heights = points.face_heights(self._discretisation.model.shell)[:, [self._number, 1]]
-        fields = points.evaluate(reference, self._state, self._phi, heights)
-        frames = self._recovery.points
-        F = np.moveaxis(fields.F, 2, 0) @ np.swapaxes(frames, -1, -2)
-        values, vectors = np.linalg.eigh(np.swapaxes(F[0], -1, -2) @ F[0])
+        F, recovery = self._deformation.F[self._number], self._recovery
+        values, vectors = np.linalg.eigh(np.swapaxes(F, -1, -2) @ F)
         H = _of_values(0.5 * np.log(values), vectors)
-        R = F[0] @ _of_values(values**-0.5, vectors)
-        micro = frames @ np.swapaxes(fields.R, -1, -2) @ R
-        shown = np.swapaxes(R, -1, -2) @ deformed_axes(F[1])
-        recovery = self._recovery
-        return Strained(
-            recovery.tensors(H), *(recovery.vectors(_rotation_vectors(matrices)) for matrices in (micro, shown))
-        )
+        R = F @ _of_values(values**-0.5, vectors)
+        rotations = self._deformation.back @ R, np.swapaxes(R, -1, -2) @ self._deformation.axes
+        return Strained(recovery.tensors(H), *(recovery.vectors(_rotation_vectors(one)) for one in rotations))
 
     @cached_property
     def _split(self) -> tuple[FloatArray, FloatArray]:
