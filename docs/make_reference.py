@@ -334,9 +334,12 @@ def pages() -> dict[pathlib.Path, dict[str, str]]:
 def outputs_table() -> str:
     """What a result holds."""
     rows = ["| Name | Symbol | Unit | Of each | What it is |", "|---|---|---|---|---|"]
-    where = {"point": "node", "cell": "element"}
+    where = {"point": "node", "patch": "node and patch", "cell": "element"}
     for output in OUTPUTS.values():
-        symbols = [f"`{output.symbol}`", *(f"`{output.symbol}{i}`" for i in (1, 2, 3) if output.components == 3)]
+        symbols = [f"`{output.symbol}`"] if output.has_length or output.components == 1 else []
+        if output.components > 1:
+            numbers = range(1, output.components + 1)
+            symbols += [f"`{output.of_component(output.symbol, number)}`" for number in numbers]
         unit = output.unit or "1"
         rows.append(f"| `{output.name}` | {', '.join(symbols)} | {unit} | {where[output.where]} | {output.sentence} |")
     return "\n".join(rows)

@@ -14,6 +14,7 @@ from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.materials import MicropolarNeoHookean
 from magshell.mesh import cylinder
 from magshell.model.course import Loading
+from magshell.model.shell import Shell
 from magshell.output import rendering
 
 RADIUS, LENGTH = 10e-3, 16e-3
@@ -55,6 +56,13 @@ class FakeConverged:
     def thickness_ratio(self):
         return 1 - 20 * np.abs(self._u).mean(axis=(1, 2))
 
+    def at_face(self, name, face):
+        size = {"top": 2e3, "middle": 1e3, "bottom": -1e3}[face] * self.state.u
+        return size[:, :, None] * size[:, None] if name == "stress" else np.linalg.norm(size, axis=1)
+
+    def resultant(self, name):
+        return 5.0 * np.stack([self.state.u, -self.state.u], axis=2)
+
     @property
     def energies(self):
         return np.column_stack([1e-6 * np.abs(self._u).sum(axis=(1, 2)), np.zeros(len(self._u))])
@@ -82,7 +90,8 @@ class FakePath:
         self.model = SimpleNamespace(
             field=UniformField(field),
             coupling=MicropolarCouple(),
-            shell=SimpleNamespace(material=MicropolarNeoHookean(135e3, 3.25e6, 13.5e3, 9e-5), thickness=0.9e-3),
+            shell=Shell(mesh, 0.9e-3, MicropolarNeoHookean(135e3, 3.25e6, 13.5e3, 9e-5)),
+            outputs=("stress", "membrane_force"),
             probe_nodes={name: mesh.node_at(position) for name, position in probes.items()},
             course=lambda stage: SimpleNamespace(
                 at=lambda load_factor: Loading(np.zeros(3), np.zeros(0), np.zeros((1, 11)))

@@ -10,7 +10,7 @@ import pyvista
 
 import magshell as ms
 from magshell.evaluation.converged import converged
-from magshell.evaluation.outputs import OUTPUTS
+from magshell.evaluation.outputs import OUTPUTS, chosen
 from magshell.output.history import HistoryWriter
 from magshell.output.pictures import draw_pictures
 from magshell.output.summary import write_summary
@@ -70,8 +70,8 @@ def test_series_holds_every_output_of_every_step(results, tmp_path):
         for step in path.steps:
             reader.set_active_time_value(step.load_factor)
             grid = reader.read()[0]
-            for name, output in OUTPUTS.items():
-                array = (grid.point_data if output.where == "point" else grid.cell_data)[name]
+            for output in chosen(()):
+                array = (grid.cell_data if output.where == "cell" else grid.point_data)[output.name]
                 np.testing.assert_array_equal(array, output.evaluate(converged(path.discretisation, step)))
 
 
@@ -91,7 +91,16 @@ def test_outputs_of_the_undeformed_strip(results):
         "energy": np.zeros(elements),
         "element_group": np.zeros(elements),
     }
-    assert list(expected) == list(OUTPUTS)
+    others = [output for name, output in OUTPUTS.items() if name not in expected]
+    assert len(expected) + len(others) == len(OUTPUTS)
+    for output in others:
+        found = output.evaluate(converged(discretisation, path.steps[0]))
+        rows = elements if output.where == "cell" else nodes
+        assert found.shape == (rows, output.components)[: 1 + (output.components > 1)], output.name
+        axes = np.eye(3)[int(output.name[-1]) - 1] if output.name.startswith("local_axis") else 0.0
+        rest = 1.0 if output.name.startswith("principal_stretches") else axes
+        scale = 303e3 if output.unit else 1.0
+        np.testing.assert_allclose(found - rest, 0.0, atol=1e-14 * scale, err_msg=output.name)
     energy_scale = 303e3 * LENGTH * 5e-3 * THICKNESS
     for name, values in expected.items():
         found = OUTPUTS[name].evaluate(converged(discretisation, path.steps[0]))

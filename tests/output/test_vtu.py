@@ -8,7 +8,7 @@ import pyvista
 
 from magshell.errors import InputError
 from magshell.evaluation.converged import converged
-from magshell.evaluation.outputs import OUTPUTS, find
+from magshell.evaluation.outputs import OUTPUTS, chosen, find
 from magshell.output.vtu import VtuWriter, save_path
 
 QUADRATIC_QUAD = int(pyvista.CellType.QUADRATIC_QUAD)
@@ -74,16 +74,16 @@ def test_quads_are_drawn_curved(path, written):
 def test_files_hold_exactly_the_registered_outputs(path, written):
     for step in path.steps:
         grid = pyvista.read(written / "steps" / f"step-{step.number:04d}.vtu")
-        names = {"point": set(grid.point_data.keys()), "cell": set(grid.cell_data.keys())}
-        for where, found in names.items():
-            assert found == {name for name, output in OUTPUTS.items() if output.where == where}
-        assert texts(grid, "outputs") == list(OUTPUTS)
-        assert texts(grid, "units") == [output.unit for output in OUTPUTS.values()]
-        assert texts(grid, "meanings") == [output.sentence for output in OUTPUTS.values()]
-        for name, output in OUTPUTS.items():
-            array = (grid.point_data if output.where == "point" else grid.cell_data)[name]
-            rows = len(grid.points) if output.where == "point" else grid.n_cells
-            assert array.shape == ((rows,) if output.components == 1 else (rows, 3)), name
+        outputs = {output.name: output for output in chosen(path.model.outputs)}
+        assert set(grid.point_data.keys()) == {name for name in outputs if outputs[name].where != "cell"} | {"node"}
+        assert set(grid.cell_data.keys()) == {name for name in outputs if outputs[name].where == "cell"}
+        assert texts(grid, "outputs") == list(outputs)
+        assert texts(grid, "units") == [output.unit for output in outputs.values()]
+        assert texts(grid, "meanings") == [output.sentence for output in outputs.values()]
+        for name, output in outputs.items():
+            array = (grid.cell_data if output.where == "cell" else grid.point_data)[name]
+            rows = grid.n_cells if output.where == "cell" else len(grid.points)
+            assert array.shape == ((rows,) if output.components == 1 else (rows, output.components)), name
             np.testing.assert_array_equal(array, output.evaluate(converged(path.discretisation, step)), err_msg=name)
 
 
@@ -95,7 +95,8 @@ def test_meshio_opens_the_files(path, written):
         np.testing.assert_array_equal(found.points, path.discretisation.mesh.points)
         np.testing.assert_array_equal(found.cells_dict["quad8"], path.discretisation.mesh.elements)
         np.testing.assert_array_equal(found.point_data["displacement"], step.state.u)
-        assert set(found.cell_data) == {name for name, output in OUTPUTS.items() if output.where == "cell"}
+        cells = {output.name for output in chosen(path.model.outputs) if output.where == "cell"}
+        assert set(found.cell_data) == cells
         assert texts(pyvista.read(written / "steps" / f"step-{step.number:04d}.vtu"), "element_group_names") == (
             found.field_data["element_group_names"].astype(np.uint8).tobytes().decode().split("\n")
         )
@@ -144,7 +145,10 @@ def test_disk_error_names_the_file(path, tmp_path):
 
 def test_registry_is_unambiguous_and_complete():
     words = [word for output in OUTPUTS.values() for word in {output.name, output.symbol}]
-    words += [f"{output.symbol}{i}" for output in OUTPUTS.values() if output.components == 3 for i in (1, 2, 3)]
+    for output in (one for one in OUTPUTS.values() if one.components > 1):
+        assert len(output.suffixes) == output.components
+        components = range(1, output.components + 1)
+        words += [output.of_component(word, i) for word in (output.name, output.symbol) for i in components]
     assert len(words) == len(set(words))
     for name, output in OUTPUTS.items():
         assert output.name == name
@@ -155,5 +159,18 @@ def test_registry_is_unambiguous_and_complete():
 def test_find_by_name_symbol_and_component():
     assert find("displacement") == find("u") == (OUTPUTS["displacement"], None)
     assert find("u3") == (OUTPUTS["displacement"], 3)
+    assert find("s12_top") == find("stress12_top") == (OUTPUTS["stress_top"], 4)
+    assert find("M21") == (OUTPUTS["bending_moment"], 4)
     with pytest.raises(InputError, match="Did you mean 'displacement'"):
         find("displacements")
+    with pytest.raises(InputError, match="name one of s11_top, s22_top, s33_top, s12_top, s23_top, s13_top"):
+        find("stress_top")
+
+
+def test_outputs_beside_the_usual_ones_are_chosen_by_name_or_for_all_faces():
+    usual = [output.name for output in OUTPUTS.values() if output.usual]
+    assert [output.name for output in chosen(())] == usual
+    more = {output.name for output in chosen(["stress", "energy_density"])} - set(usual)
+    assert more == {"stress_top", "stress_middle", "stress_bottom", "energy_density"}
+    with pytest.raises(InputError, match=r"outputs: there is no output 'strss'. Did you mean 'stress'"):
+        chosen(["strss"])

@@ -75,8 +75,8 @@ class Discretisation:
         Those that there are.
     reference : Reference
         Arrays of the undeformed shell.
-    materials : sequence of Material
-        Of the regions of the shell.
+    materials, couplings : sequence of Material, sequence of Coupling
+        Laws of the parts of the shell, by the numbers that its levels have.
     rows : Rows
         Of the nodal arrays: the nodes of the mesh first.
     carried, free : ndarray of bool, shape (rows, 11)
@@ -88,6 +88,7 @@ class Discretisation:
         self.model, self.mesh, self.rows = model, model.shell.mesh, model.rows
         make = make_of(model)
         self.reference, self.materials = reference_of_model(model, make), make.materials
+        self.couplings = make.couplings
         self.shell = ShellTerm(self.reference, len(self.rows.of), stiffest_of(make))
         self.loads = LoadTerm(model.applied, model.constraints)
         self.terms: Sequence[Term] = (self.shell, self.loads) if model.applied else (self.shell,)

@@ -14,9 +14,8 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.equations.discretisation import Discretisation
-from magshell.evaluation.points import evaluate, level_stretch
-from magshell.magnetics import law
-from magshell.magnetics.law import OMEGA, M
+from magshell.evaluation import points
+from magshell.evaluation.points import evaluate, level_stretch, of_couplings
 from magshell.model.course import Loading
 from magshell.shell.rotation import cross
 from magshell.shell.state import State
@@ -71,18 +70,11 @@ def largest_imbalances(balances: Sequence[Balance]) -> tuple[float, float]:
 
 
 def magnetic_torque(discretisation: Discretisation, state: State, flux_density: FloatArray) -> tuple[FloatArray, float]:
-    """Total torque of the field (3,), N m, and the integral of its magnitude.
-
-    Per unit volume the law's forces f on m = F B̃ and c on the spin do the work -(f · δm + c · δω) in a rigid rotation:
-    a torque -(m × f + c), which is (1/mu0) m × B for the couple.
-    """
+    """Total torque of the field (3,), N m, and the integral of its magnitude."""
     reference = discretisation.reference
-    fields, remanence = evaluate(reference, state, level_stretch(reference, state, flux_density)), reference.remanence
-    m = np.einsum("epkxy,epky->epkx", fields.F, remanence)
-    n = np.einsum("epxy,epky->epkx", fields.R, remanence)
-    _, forces, _ = law.evaluate(discretisation.model.coupling, m, n, flux_density)
-    torque = -(cross(m, forces[..., M : M + 3]) + forces[..., OMEGA : OMEGA + 3])
-    torque *= reference.geometry.volume[..., None]
+    fields = evaluate(reference, state, level_stretch(reference, state, flux_density))
+    forces = of_couplings(reference, discretisation.couplings, fields, flux_density)
+    torque = points.magnetic_torque(reference, fields, forces) * reference.geometry.volume[..., None]
     return torque.sum(axis=(0, 1, 2)), float(np.linalg.norm(torque, axis=-1).sum())
 
 

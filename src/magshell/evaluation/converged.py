@@ -10,9 +10,12 @@ import numpy as np
 from magshell.arrays import FloatArray, IntArray
 from magshell.equations.discretisation import Assembly, Discretisation
 from magshell.equations.instant import Instant
-from magshell.evaluation.points import PointFields, evaluate, level_stretch
+from magshell.evaluation.points import PointFields, evaluate, level_stretch, magnetic_torque, of_couplings
+from magshell.evaluation.resultants import Resultants
+from magshell.evaluation.strain import FACES, Deformation, Face
 from magshell.model.course import Loading
 from magshell.shell import rotation
+from magshell.shell.point import INTERNAL
 from magshell.shell.state import State
 
 
@@ -43,13 +46,47 @@ class Converged:
     @cached_property
     def fields(self) -> PointFields:
         """Deformation gradient, micro-rotation and wryness at the points."""
-        reference = self.discretisation.reference
-        return evaluate(reference, self.state, level_stretch(reference, self.state, self.loading.flux_density))
+        return evaluate(self.discretisation.reference, self.state, self._level_stretch)
+
+    @cached_property
+    def _level_stretch(self) -> FloatArray | None:
+        """Stretch that levels have of their own (elements, p, k)."""
+        return level_stretch(self.discretisation.reference, self.state, self.loading.flux_density)
 
     @property
     def displacement(self) -> FloatArray:
         """Displacement (nodes, 3), m."""
         return self.state.displacement(len(self.mesh.points))
+
+    @cached_property
+    def _deformation(self) -> Deformation:
+        return Deformation(self.discretisation, self.state, self._level_stretch)
+
+    @cached_property
+    def _faces(self) -> dict[str, Face]:
+        return {name: Face(self._deformation, name) for name in FACES}
+
+    @cached_property
+    def _resultants(self) -> Resultants:
+        return Resultants(self._deformation, self.state, self.fields, self.loading.flux_density)
+
+    def at_face(self, name: str, face: str) -> FloatArray:
+        """A quantity of `Face`, by its name, at the rows of the patches."""
+        return np.asarray(getattr(self._faces[face], name))
+
+    def resultant(self, name: str) -> FloatArray:
+        """A quantity of `Resultants`, by its name, at the rows of the patches."""
+        return np.asarray(getattr(self._resultants, name))
+
+    def energy_density(self) -> FloatArray:
+        """Strain energy per undeformed volume (elements,), J/m³, mean over the element."""
+        return self.energies[:, INTERNAL] / self.discretisation.reference.geometry.volume.sum(axis=(1, 2))
+
+    def torque_density(self) -> FloatArray:
+        """Torque of the field per undeformed volume (elements, 3), N/m², mean over the element."""
+        d = self.discretisation
+        forces = of_couplings(d.reference, d.couplings, self.fields, self.loading.flux_density)
+        return self.mean(magnetic_torque(d.reference, self.fields, forces))
 
     def director(self) -> FloatArray:
         """Director d = D + w (nodes, 3)."""

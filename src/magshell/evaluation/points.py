@@ -8,10 +8,17 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
+from magshell.magnetics.law import OMEGA, WORK, Coupling, M
+from magshell.magnetics.law import evaluate as evaluate_coupling
 from magshell.materials.law import Material
 from magshell.materials.law import evaluate as evaluate_law
+from magshell.model.reference import faces_of
+from magshell.model.shell import Shell
 from magshell.shell import loops, rotation
 from magshell.shell.body import Reference
+from magshell.shell.geometry import SectionGeometry
+from magshell.shell.rotation import cross
+from magshell.shell.shear_profile import Moduli, middle
 from magshell.shell.state import State
 
 
@@ -33,8 +40,41 @@ class PointFields(NamedTuple):
     kappa: FloatArray
 
 
-def evaluate(reference: Reference, state: State, zeta: FloatArray | None = None) -> PointFields:
-    """Deformation gradient, micro-rotation and wryness; with the stretches `zeta` (elements, p, k) of the levels."""
+class Levels(NamedTuple):
+    """Heights over the mesh at which the deformation is wanted.
+
+    Attributes
+    ----------
+    z : ndarray, shape (elements, p, k)
+        m.
+    G : ndarray, shape (elements, p, k, 3, 3)
+        Dual base there, 1/m.
+    warping : ndarray, shape (elements, p, k)
+        By how much the transverse shear exceeds the director's there, as a share of it.
+    zeta : ndarray, shape (elements, p, k), or None
+        Stretch that each has of its own.
+    """
+
+    z: FloatArray
+    G: FloatArray
+    warping: FloatArray
+    zeta: FloatArray | None
+
+
+def evaluate(
+    reference: Reference, state: State, zeta: FloatArray | None = None, levels: Levels | None = None
+) -> PointFields:
+    """Deformation gradient, micro-rotation and wryness.
+
+    Parameters
+    ----------
+    reference : Reference
+    state : State
+    zeta : ndarray, shape (elements, p, k), optional
+        Stretch that the levels of the section have of their own.
+    levels : Levels, optional
+        By default those of the section.
+    """
     geometry, shape, elements = reference.geometry, reference.shape, reference.body.elements
     rest, stretch = elements[:, : shape.director.shape[-1]], elements[:, : shape.phi.shape[-1]]
     a = geometry.A + np.einsum("epan,enx->epax", shape.u, state.u[elements])
@@ -42,12 +82,13 @@ def evaluate(reference: Reference, state: State, zeta: FloatArray | None = None)
     d, dd = geometry.D + w[:, :, 0], geometry.dD + w[:, :, 1:]
     φ = np.einsum("epn,en->ep", shape.phi, state.phi[stretch])
     enhanced = np.einsum("epam,emx->epax", shape.enhancement, state.alpha)
-    z = geometry.z
+    z, G = (geometry.z, geometry.G) if levels is None else (levels.z, levels.G)
+    zeta = zeta if levels is None else levels.zeta
     along = 1.0 + 2.0 * z * φ[..., None] + (0.0 if zeta is None else zeta)
     g_tangent = a[:, :, None] + z[..., None, None] * dd[:, :, None]
     g_3 = along[..., None] * d[:, :, None]
     g = np.concatenate([g_tangent, g_3[:, :, :, None]], axis=3) + enhanced[:, :, None]
-    F = np.einsum("epkax,epkay->epkxy", g, geometry.G)
+    F = np.einsum("epkax,epkay->epkxy", g, G)
     if not reference.body.layout.q:
         R = np.broadcast_to(np.eye(3), (*a.shape[:2], 3, 3))
         return PointFields(F, R, np.zeros_like(a))
@@ -64,6 +105,47 @@ def _at_nodes(reference: Reference, state: State) -> FloatArray:
     count = reference.shape.director.shape[-1]
     rows, normals = reference.body.elements[:, :count], reference.body.normals[:, :count]
     return np.asarray(state.w[rows] + state.s[rows][..., None] * (normals + state.w[rows]))
+
+
+def faces(shell: Shell, geometry: SectionGeometry) -> Levels:
+    """The upper face, the middle and the lower face at the points: three levels."""
+    bottom, top = np.moveaxis(faces_of(shell), 2, 0)
+    z = np.stack([top, 0.5 * (bottom + top), bottom], axis=2)
+    covariant = geometry.A[:, :, None] + z[..., None, None] * geometry.dD[:, :, None]
+    director = np.broadcast_to(geometry.D[:, :, None, None], (*z.shape, 1, 3))
+    base = np.concatenate([covariant, director], axis=3)
+    warping = np.zeros_like(z)
+    for part in shell.parts:
+        if part.layered:
+            moduli = [Moduli.of(layer.material) for layer in part.layers]
+            warping[part.elements] = np.stack(
+                [
+                    -np.ones(part.at_points.shape[:2]),
+                    middle(part.at_points, moduli),
+                    -np.ones(part.at_points.shape[:2]),
+                ],
+                axis=2,
+            )
+    return Levels(z, np.ascontiguousarray(np.swapaxes(np.linalg.inv(base), -1, -2)), warping, None)
+
+
+def at_heights(reference: Reference, values: FloatArray, z: FloatArray) -> FloatArray:
+    """Values of the levels (elements, p, k) at heights z (elements, p, n): linear within the layer that is nearest.
+
+    What is known at one level of a layer only is constant in it.
+    """
+    own, made = reference.geometry.z, reference.body.levels["material"]
+    apart = np.abs(own[:, :, None] - z[..., None])
+    nearest = apart.argmin(axis=3)
+    layer = np.take_along_axis(made, nearest, axis=2)
+    elsewhere = (made[:, :, None] != layer[..., None]) | (np.arange(own.shape[2]) == nearest[..., None])
+    elsewhere |= own[:, :, None] == np.take_along_axis(own, nearest, axis=2)[..., None]
+    second = np.where(elsewhere, np.inf, apart).argmin(axis=3)
+    alone = elsewhere.all(axis=3)
+    at, also = (np.take_along_axis(own, index, axis=2) for index in (nearest, second))
+    value, other = (np.take_along_axis(values, index, axis=2) for index in (nearest, second))
+    slope = np.divide(other - value, also - at, out=np.zeros_like(value), where=~alone & (also != at))
+    return np.asarray(value + slope * (z - at))
 
 
 def micropolar_stretch(fields: PointFields) -> FloatArray:
@@ -92,6 +174,39 @@ def sheared(U: FloatArray, D: FloatArray) -> FloatArray:
     s = 0.5 * np.einsum("...ij,...j->...i", U + np.swapaxes(U, -1, -2), D)
     s = s - np.sum(s * D, axis=-1, keepdims=True) * D
     return np.asarray(s[..., :, None] * D[..., None, :] + D[..., :, None] * s[..., None, :])
+
+
+def with_warping(reference: Reference, fields: PointFields, warping: FloatArray) -> PointFields:
+    """The deformation with the transverse shear that layers have at the heights it is of."""
+    if not warping.any():
+        return fields
+    ρ, R = warping[..., None, None], fields.R[:, :, None]
+    U = np.swapaxes(R, -1, -2) @ fields.F
+    return fields._replace(F=R @ (U + ρ * sheared(U, reference.geometry.D[:, :, None])))
+
+
+def of_couplings(
+    reference: Reference, couplings: Sequence[Coupling], fields: PointFields, flux_density: FloatArray
+) -> FloatArray:
+    """Forces (e, p, k, 9) of the coupling laws that hold at the points, on m = F B̃, the spin and the position."""
+    made, remanence = reference.body.levels["coupling"], reference.remanence
+    m = np.einsum("epkxy,epky->epkx", fields.F, remanence)
+    n = np.einsum("epxy,epky->epkx", fields.R, remanence)
+    forces = np.empty((*made.shape, WORK))
+    for number, coupling in enumerate(couplings):
+        at = made == number
+        forces[at] = evaluate_coupling(coupling, m[at], n[at], flux_density)[1]
+    return forces
+
+
+def magnetic_torque(reference: Reference, fields: PointFields, forces: FloatArray) -> FloatArray:
+    """Torque of the field per undeformed volume (e, p, k, 3), N/m².
+
+    The forces f on m = F B̃ and c on the spin do the work -(f · δm + c · δω) in a rigid rotation: a torque
+    -(m × f + c), which is (1/mu0) m × B for the couple.
+    """
+    m = np.einsum("epkxy,epky->epkx", fields.F, reference.remanence)
+    return -(cross(m, forces[..., M : M + 3]) + forces[..., OMEGA : OMEGA + 3])
 
 
 def level_stretch(reference: Reference, state: State, flux_density: FloatArray) -> FloatArray | None:

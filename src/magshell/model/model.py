@@ -55,6 +55,11 @@ class Model:
         `Force`, `Moment`, `Traction`, `Pressure`, `Gravity`.
     stages : sequence of Stage, optional
         Parts of the load path in sequence; by default one under load control, or as many as the longest history has.
+    local_axis : (3,) array_like, optional
+        Direction whose projection on the undeformed surface is the first local axis of strains, stresses and
+        resultants.
+    outputs : sequence of str, optional
+        Outputs of `magshell.evaluation.outputs` that files and pages hold beside those that they always do.
 
     Attributes
     ----------
@@ -80,6 +85,8 @@ class Model:
     probes: Mapping[str, ArrayLike] = dataclasses.field(default_factory=dict)
     loads: Sequence[Load] = ()
     stages: Sequence[Stage] = ()
+    local_axis: ArrayLike = (1.0, 0.0, 0.0)
+    outputs: Sequence[str] = ()
     rows: Rows = dataclasses.field(init=False, repr=False)
     constraints: Constraints = dataclasses.field(init=False, repr=False)
     applied: tuple[Applied, ...] = dataclasses.field(init=False, repr=False)
@@ -94,6 +101,8 @@ class Model:
         put(self, "supports", tuple(self.supports))
         put(self, "loads", tuple(self.loads))
         put(self, "stages", tuple(self.stages) or (Stage(),) * self._longest_history())
+        put(self, "local_axis", _direction("local_axis", self.local_axis))
+        put(self, "outputs", tuple(self.outputs))
         put(self, "rows", rows_of(self.shell))
         constraints = resolve(mesh, self.supports, self.shell.carriers, len(self.stages))
         put(self, "constraints", self.rows.constraints(constraints))
@@ -222,3 +231,11 @@ class Model:
                 meets = length > TOUCHING
                 normals[nodes[meets]] = inside[meets] / length[meets, None]
         return normals
+
+
+def _direction(where: str, value: ArrayLike) -> FloatArray:
+    """A direction as three numbers."""
+    direction = np.asarray(value, dtype=float)
+    if direction.shape != (3,) or not np.isfinite(direction).all() or not direction.any():
+        raise InputError(f"{where} is {value!r}; it must be three finite numbers, not all zero")
+    return direction

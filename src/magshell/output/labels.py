@@ -4,9 +4,20 @@ from __future__ import annotations
 
 from magshell.evaluation.outputs import Output
 
-_SHOWN_UNITS = {"m": ("mm", 1e3), "1/m": ("1/mm", 1e-3), "T": ("mT", 1e3), "J": ("µJ", 1e6)}
-_TEX = {"h": "h/h_0", "phi": r"\varphi", "theta": r"\vartheta"}
-_PLAIN = {"h": "h/h₀", "phi": "φ", "theta": "ϑ"}
+_SHOWN_UNITS = {
+    "m": ("mm", 1e3), "1/m": ("1/mm", 1e-3), "T": ("mT", 1e3), "J": ("µJ", 1e6), "Pa": ("kPa", 1e-3),
+    "J/m³": ("kJ/m³", 1e-3), "N/m²": ("kN/m²", 1e-3), "N": ("mN", 1e3),
+}  # fmt: skip
+_TEX = {
+    "h": "h/h_0", "phi": r"\varphi", "theta": r"\vartheta", "s": r"\sigma", "s_vm": r"\sigma_\mathrm{vM}", "s_p": r"\sigma",
+    "s_a": r"\sigma^\mathrm{axial}", "e": r"\varepsilon", "e_max": r"\varepsilon_\mathrm{max}", "lambda": r"\lambda",
+    "tau": r"\tau",
+}  # fmt: skip
+_PLAIN = {
+    "h": "h/h₀", "phi": "φ", "theta": "ϑ", "s": "σ", "s_vm": "σᵥₘ", "s_p": "σ", "s_a": "σ axial ", "e": "ε", "e_max": "ε max",
+    "lambda": "λ", "tau": "τ", "t_1": "t₁", "t_2": "t₂",
+}  # fmt: skip
+_SUBSCRIPTS = str.maketrans("123", "₁₂₃")
 
 
 def shown_unit(output: Output) -> tuple[str, float]:
@@ -15,16 +26,26 @@ def shown_unit(output: Output) -> tuple[str, float]:
 
 
 def tex(output: Output, component: int | None) -> str:
-    """The output, or a component (1 to 3), as mathematics; a whole vector stands for its length."""
-    letter = _TEX.get(output.symbol, output.symbol if len(output.symbol) == 1 else rf"\mathrm{{{output.symbol}}}")
+    """The output, or a component (from 1), as mathematics; a whole vector stands for its length."""
+    symbol = _letter(output)
+    letter = _TEX.get(symbol, symbol if len(symbol) == 1 else rf"\mathrm{{{symbol}}}")
+    face = f" {output.face}" if output.face else ""
     if component is not None:
-        return f"${letter}_{component}$"
-    return f"$|{letter}|$" if output.components == 3 else f"${letter}$"
+        return f"${letter}_{{{output.suffixes[component - 1]}}}${face}"
+    return f"$|{letter}|${face}" if output.components > 1 else f"${letter}${face}"
 
 
-def plain(output: Output) -> str:
-    """The symbol as text."""
-    return _PLAIN.get(output.symbol, output.symbol)
+def plain(output: Output, component: int | None = None) -> str:
+    """The same as text."""
+    symbol = _letter(output)
+    letter, face = _PLAIN.get(symbol, symbol), f" {output.face}" if output.face else ""
+    if component is not None:
+        return f"{letter}{output.suffixes[component - 1].translate(_SUBSCRIPTS)}{face}"
+    return f"|{letter}|{face}" if output.components > 1 else f"{letter}{face}"
+
+
+def _letter(output: Output) -> str:
+    return output.symbol.removesuffix(f"_{output.face}") if output.face else output.symbol
 
 
 def bar_title(output: Output, component: int | None) -> str:

@@ -12,6 +12,7 @@ from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError
 from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import Output, find
+from magshell.evaluation.patches import patches_of
 from magshell.output.labels import bar_title, shown_unit
 from magshell.output.rounding import without_round_off
 from magshell.output.scene import draw
@@ -44,8 +45,8 @@ def draw_shape(
     step : int
         Which converged step; negative counts from the last.
     color : str
-        Output that colours the shape: a name or symbol of `magshell.evaluation.outputs`, with 1, 2 or 3 after
-        the symbol for a component ("u3", "rotation", "thickness_ratio").
+        Output that colours the shape: a name or symbol of `magshell.evaluation.outputs`, with the suffix of a component
+        ("u3", "rotation", "thickness_ratio", "von_mises_top", "s11_top").
 
     Returns
     -------
@@ -110,8 +111,11 @@ def shown_values(
     """The scalar shown at each step, in the unit of pictures, at the points of the surface."""
     _, factor = shown_unit(output)
     for values in without_round_off(path, output, steps):
-        spread = skin.at_points(values) if output.where == "point" else skin.on_elements(values)
-        if output.components == 3:
+        if output.where == "patch":
+            spread = skin.at_corners(values[patches_of(path.model.shell).elements])
+        else:
+            spread = skin.at_points(values) if output.where == "point" else skin.on_elements(values)
+        if output.components > 1:
             spread = np.linalg.norm(spread, axis=1) if component is None else spread[:, component - 1]
         yield np.asarray(factor * spread)
 

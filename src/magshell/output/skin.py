@@ -47,6 +47,9 @@ class Skin(Protocol):
     def at_points(self, values: AnyArray) -> AnyArray:
         """Nodal values (nodes, ...) at the points of the surface."""
 
+    def at_corners(self, values: AnyArray) -> AnyArray:
+        """Values at the nodes of each element (elements, 8, ...) at the points of the surface."""
+
     def on_elements(self, values: AnyArray) -> AnyArray:
         """Values of elements (elements, ...) at the points of the surface."""
 
@@ -76,17 +79,21 @@ class Sheet:
         """Nodal values at the points."""
         return self._cells.at_points(values)
 
+    def at_corners(self, values: AnyArray) -> AnyArray:
+        """Values at the nodes of each element at the points."""
+        return self._cells.at_corners(values)
+
     def on_elements(self, values: AnyArray) -> AnyArray:
         """Values of elements at the points."""
         return self._cells.on_elements(values)
 
     def extent(self, reached: Converged) -> FloatArray:
         """Positions of its nodes in a state."""
-        return self._mesh.points + reached.state.u
+        return self._mesh.points + reached.displacement
 
     def placed(self, reached: Converged) -> Placed:
         """Where it is in a state."""
-        x = self._mesh.points + reached.state.u
+        x = self._mesh.points + reached.displacement
         curves = (self._cells.edges(x, edges) for edges in (self._edges, self._mesh.boundary_edges))
         return Placed(self._cells.surface(x), *curves)
 
@@ -163,10 +170,14 @@ class Hull:
 
     def at_points(self, values: AnyArray) -> AnyArray:
         """Nodal values at the points."""
-        own = values[self._mesh.elements].reshape(-1, *values.shape[1:])
+        return self.at_corners(values[self._mesh.elements])
+
+    def at_corners(self, values: AnyArray) -> AnyArray:
+        """Values at the nodes of each element at the points."""
+        own = values.reshape(-1, *values.shape[2:])
         flat = self._cells.at_points(own)
         along = self._cells.edges(own.reshape(len(own), -1), self._walls)
-        on_walls = along.reshape(-1, *values.shape[1:])
+        on_walls = along.reshape(-1, *values.shape[2:])
         return np.concatenate([flat, flat, on_walls, on_walls])
 
     def on_elements(self, values: AnyArray) -> AnyArray:
@@ -178,7 +189,7 @@ class Hull:
     def faces(self, reached: Converged) -> FloatArray:
         """Positions (2, elements, 8, 3) of the bottom and the top face: x = X + u + z (1 + z φ) d, m."""
         mesh = self._mesh
-        middle = (mesh.points + reached.state.u)[mesh.elements]
+        middle = (mesh.points + reached.displacement)[mesh.elements]
         director, φ = reached.element_directors(), reached.element_phi()[..., None]
         return np.stack([middle + z * (1.0 + z * φ) * director for z in np.moveaxis(self._heights, 2, 0)[..., None]])
 

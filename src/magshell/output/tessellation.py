@@ -6,6 +6,7 @@ serendipity functions, or the six of the triangle; it is sampled on a regular la
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -30,10 +31,12 @@ class Surface(NamedTuple):
 
 
 class Lattice(NamedTuple):
-    """Elements of one shape: their numbers, functions (m, nodes) and derivatives (m, 2, nodes), pieces of one."""
+    """Elements of one shape: their numbers, nodes and the places of these, functions (m, nodes) and derivatives (m, 2,
+    nodes), pieces of one."""
 
     elements: IntArray
     nodes: IntArray
+    slots: IntArray
     N: FloatArray
     dN: FloatArray
     pieces: IntArray
@@ -61,10 +64,10 @@ class Tessellation:
         lattices = []
         if not triangles.all():
             chosen = np.flatnonzero(~triangles)
-            lattices.append(Lattice(chosen, elements[chosen], *_square(self.pieces)))
+            lattices.append(Lattice(chosen, elements[chosen], np.arange(8), *_square(self.pieces)))
         if triangles.any():
-            chosen = np.flatnonzero(triangles)
-            lattices.append(Lattice(chosen, elements[chosen][:, triangle.SLOTS], *_triangle(self.pieces)))
+            chosen, slots = np.flatnonzero(triangles), triangle.SLOTS
+            lattices.append(Lattice(chosen, elements[chosen][:, slots], slots, *_triangle(self.pieces)))
         self.lattices = lattices
 
     def surface(self, positions: FloatArray) -> Surface:
@@ -83,8 +86,16 @@ class Tessellation:
 
     def at_points(self, values: FloatArray) -> FloatArray:
         """Nodal values, shape (nodes,) or (nodes, k), at the points of the surface."""
-        sampled = [np.einsum("mn,en...->em...", lattice.N, values[lattice.nodes]) for lattice in self.lattices]
-        return np.concatenate([part.reshape(-1, *values.shape[1:]) for part in sampled])
+        return self._sampled([values[lattice.nodes] for lattice in self.lattices], values.shape[1:])
+
+    def at_corners(self, values: FloatArray) -> FloatArray:
+        """Values at the nodes of each element, shape (elements, 8) or (elements, 8, k), at the points of the surface."""
+        own = [values[lattice.elements][:, lattice.slots] for lattice in self.lattices]
+        return self._sampled(own, values.shape[2:])
+
+    def _sampled(self, own: Sequence[FloatArray], shape: tuple[int, ...]) -> FloatArray:
+        sampled = [np.einsum("mn,en...->em...", lattice.N, values) for lattice, values in zip(self.lattices, own)]
+        return np.concatenate([part.reshape(-1, *shape) for part in sampled])
 
     def on_elements(self, values: AnyArray) -> AnyArray:
         """Element values, shape (elements,) or (elements, k), at the points of the surface."""

@@ -13,7 +13,8 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from magshell.evaluation.converged import converged
-from magshell.evaluation.outputs import OUTPUTS
+from magshell.evaluation.outputs import chosen
+from magshell.evaluation.patches import patches_of
 from magshell.files import naming, refuse_somebodys, with_suffix, write_atomically
 from magshell.shell.triangle import REPEATED, SLOTS
 from magshell.solver.events import Observer
@@ -35,8 +36,9 @@ class VtuWriter(Observer):
     """Write every converged step as a file of quadratic quads and triangles, which ParaView draws curved.
 
     Points are reference positions (m): in ParaView, *Warp By Vector* with `displacement` shows the deformed
-    shape. Point and cell arrays are those of `magshell.evaluation.outputs`; their units and meaning are in the
-    field data `outputs`, `units` and `meanings` (bytes of UTF-8, a line each), beside `load_factor`, `step`,
+    shape. Point and cell arrays are the usual ones of `magshell.evaluation.outputs` and those that the model asks for;
+    their units and meaning are in the field data `outputs`, `units` and `meanings` (bytes of UTF-8, a line each), beside
+    `load_factor`, `step`,
     `flux_density` and `flux_density_magnitude` (T). The time in the PVD file is the load factor plus the number of the
     stages before, or, on a path that turns back, the number of the step.
 
@@ -146,20 +148,24 @@ def grid(discretisation: Discretisation, step: Step | CriticalPoint | BucklingMo
     Returns
     -------
     pyvista.UnstructuredGrid
-        Reference positions with every registered output.
+        Reference positions with the outputs. On a border across which stresses jump (`Patches`) the points are there
+        once for each side: first come the nodes of the mesh, then the further ones; `node` tells which they are.
     """
     import pyvista
 
-    mesh = discretisation.mesh
-    cells = np.insert(mesh.elements, 0, np.where(mesh.triangles, len(SLOTS), 8), axis=1)
+    mesh, patches = discretisation.mesh, patches_of(discretisation.model.shell)
+    outputs = chosen(discretisation.model.outputs)
+    cells = np.insert(patches.elements, 0, np.where(mesh.triangles, len(SLOTS), 8), axis=1)
     kept = np.ones(cells.shape, dtype=bool)
     kept[np.ix_(mesh.triangles, 1 + REPEATED)] = False
     types = np.where(mesh.triangles, VTK_QUADRATIC_TRIANGLE, VTK_QUADRATIC_QUAD).astype(np.uint8)
-    result = pyvista.UnstructuredGrid(cells[kept], types, np.array(mesh.points))
+    result = pyvista.UnstructuredGrid(cells[kept], types, mesh.points[patches.nodes])
     reached = converged(discretisation, step)
-    for output in OUTPUTS.values():
-        data = result.point_data if output.where == "point" else result.cell_data
-        data.set_array(np.array(output.evaluate(reached)), output.name)
+    for output in outputs:
+        data = result.cell_data if output.where == "cell" else result.point_data
+        values = np.array(output.evaluate(reached))
+        data.set_array(values[patches.nodes] if output.where == "point" else values, output.name)
+    result.point_data.set_array(patches.nodes, "node")
     flux_density = step.flux_density
     result.field_data.update(
         {
@@ -170,9 +176,9 @@ def grid(discretisation: Discretisation, step: Step | CriticalPoint | BucklingMo
             "flux_density_magnitude": np.array([np.linalg.norm(flux_density)]),
         }
     )
-    _add_texts(result, "outputs", OUTPUTS)
-    _add_texts(result, "units", [output.unit for output in OUTPUTS.values()])
-    _add_texts(result, "meanings", [output.sentence for output in OUTPUTS.values()])
+    _add_texts(result, "outputs", [output.name for output in outputs])
+    _add_texts(result, "units", [output.unit for output in outputs])
+    _add_texts(result, "meanings", [output.sentence for output in outputs])
     _add_texts(result, "element_group_names", mesh.element_groups)
     result.point_data.active_vectors_name = "displacement"
     return result

@@ -11,6 +11,13 @@ from magshell.shell.shape_functions import NODES, serendipity
 
 def nodal_normals(points: FloatArray, elements: IntArray) -> FloatArray:
     """Unit normals (nodes, 3) of the isoparametric surface, averaged over the elements that meet at a node."""
+    total = np.zeros_like(points)
+    np.add.at(total, elements.ravel(), corner_normals(points, elements).reshape(-1, 3))
+    return np.asarray(total / np.linalg.norm(total, axis=-1, keepdims=True))
+
+
+def corner_normals(points: FloatArray, elements: IntArray) -> FloatArray:
+    """Unit normals (elements, 8, 3) of each element's surface at its nodes; zero at the repeated nodes of triangles."""
     x = points[elements]
     triangles = triangle.collapsed(x)
     A = np.einsum("pan,enx->epax", serendipity(NODES)[1], x)
@@ -20,9 +27,7 @@ def nodal_normals(points: FloatArray, elements: IntArray) -> FloatArray:
     normal = np.cross(A[:, :, 0], A[:, :, 1])
     normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
     normal[np.ix_(triangles, triangle.REPEATED)] = 0.0
-    total = np.zeros_like(points)
-    np.add.at(total, elements.ravel(), normal.reshape(-1, 3))
-    return np.asarray(total / np.linalg.norm(total, axis=-1, keepdims=True))
+    return np.asarray(normal)
 
 
 def _from_first_corner() -> FloatArray:

@@ -66,6 +66,20 @@ def profile(layers: FloatArray, moduli: Sequence[Moduli], parent: FloatArray, we
     return np.asarray(scaled.reshape(*layers.shape[:-1], -1) - 1.0)
 
 
+def middle(layers: FloatArray, moduli: Sequence[Moduli]) -> FloatArray:
+    """r - 1 (...,) half-way between the faces."""
+    half = 0.5 * layers.sum(axis=-1)
+    tops = np.cumsum(layers, axis=-1)
+    layer = np.argmax(tops >= half[..., None] * (1.0 - 1e-12), axis=-1)[..., None]
+    z = np.take_along_axis(tops - 0.5 * layers, layer, axis=-1)[..., 0]
+    thickness = np.take_along_axis(layers, layer, axis=-1)[..., 0]
+    parent = 2.0 * (half - z) / thickness
+    S, bending = _first_moment(layers, moduli, parent[..., None, None])
+    G = np.array([one.shear for one in moduli])[layer[..., 0]]
+    own = np.take_along_axis(S[..., 0], layer, axis=-1)[..., 0]
+    return np.asarray(stiffness(layers, moduli).shear * own / (bending * G) - 1.0)
+
+
 def _first_moment(layers: FloatArray, moduli: Sequence[Moduli], parent: FloatArray) -> tuple[FloatArray, FloatArray]:
     """S (..., layers, points), N, at parent points of the layers, and D (...,), N m."""
     E = np.array([one.plane for one in moduli])

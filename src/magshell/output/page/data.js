@@ -17,7 +17,6 @@ const MISSING = 65535;
 class Quantity {
   constructor(about) {
     Object.assign(this, about);
-    this.whole = this.components; // index of the ranges of a vector's length
   }
 
   // Column `component` (from 0) of a step, SI; NaN where there is no value.
@@ -55,8 +54,7 @@ class Quantity {
 
   // Symbol of a component or of the whole.
   letter(component) {
-    if (this.components === 1) return this.symbol;
-    return component < this.components ? this.symbol + "₁₂₃"[component] : `|${this.symbol}|`;
+    return this.letters[component];
   }
 }
 

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.evaluation.outputs import OUTPUTS, Output, find
+from magshell.evaluation.outputs import Output, chosen, find
+from magshell.evaluation.patches import patches_of
 from magshell.output.curve import LOAD_TEXT, abscissa, displacements, load_per_mT
 from magshell.output.labels import plain, shown_unit
 from magshell.output.page.arrays import quantised, span, text
@@ -53,20 +54,21 @@ def collect(path: Path, steps: Sequence[Step], color: str, advance: Callable[[fl
     InputError
         No such output.
     """
-    mesh = path.discretisation.mesh
+    mesh, patches = path.discretisation.mesh, patches_of(path.model.shell)
     first, component = find(color)
-    kinds, arrays = stencils(mesh)
+    shown = page_outputs(path, first)
+    kinds, arrays = stencils(patches.elements)
     arrays |= {
-        "points": text(mesh.points, "<f4"),
+        "points": text(mesh.points[patches.nodes], "<f4"),
         "edges": text(element_edges(mesh.elements), "<u4"),
         "outline": text(mesh.boundary_edges, "<u4"),
         "sequential": text(_colours("viridis"), "u1"),
         "diverging": text(_colours("coolwarm"), "u1"),
     }
     outputs = []
-    for number, output in enumerate(OUTPUTS.values()):
+    for number, output in enumerate(shown):
         about, arrays[output.name] = _output(path, steps, output)
-        advance((number + 1) / len(OUTPUTS))
+        advance((number + 1) / len(shown))
         outputs.append(about)
     magnitudes = [float(np.linalg.norm(step.flux_density)) for step in steps]
     header = {
@@ -95,6 +97,11 @@ def collect(path: Path, steps: Sequence[Step], color: str, advance: Callable[[fl
     return Data(header, arrays)
 
 
+def page_outputs(path: Path, first: Output) -> list[Output]:
+    """What a page of the path shows: the usual outputs, those that the model asks for, and that of the first view."""
+    return chosen([*path.model.outputs, first.name])
+
+
 def _column(output: Output, component: int | None) -> int:
     """Index of what colours the shape: a component from 0; after them the length of a vector."""
     if component is not None:
@@ -104,15 +111,17 @@ def _column(output: Output, component: int | None) -> int:
 
 def _output(path: Path, steps: Sequence[Step], output: Output) -> tuple[dict[str, Any], str]:
     """Description and codes of an output: step by step, component by component; once if it never changes."""
-    count = output.components
-    ranges: list[list[tuple[float, float]]] = [[] for _ in range(count + (count > 1))]
+    count, nodes = output.components, patches_of(path.model.shell).nodes
+    whole = count > 1 and output.has_length
+    ranges: list[list[tuple[float, float]]] = [[] for _ in range(count + whole)]
     codes = []
     for values in without_round_off(path, output, steps):
+        values = values[nodes] if output.where == "point" else values
         columns = values.reshape(len(values), count).T
         coded = [quantised(column) for column in columns]
         for found, (_, ends) in zip(ranges, coded, strict=False):
             found.append(ends)
-        if count > 1:
+        if whole:
             ranges[-1].append(span(np.linalg.norm(values, axis=1)))
         codes.append(np.stack([code for code, _ in coded]))
     constant = all(np.array_equal(code, codes[0]) for code in codes) and all(len(set(found)) == 1 for found in ranges)
@@ -121,11 +130,11 @@ def _output(path: Path, steps: Sequence[Step], output: Output) -> tuple[dict[str
     unit, factor = shown_unit(output)
     about = {
         "name": output.name,
-        "symbol": plain(output),
+        "letters": [plain(output, i + 1 if count > 1 else None) for i in range(count)] + [plain(output)] * whole,
         "unit": unit,
         "factor": factor,
         "sentence": output.sentence,
-        "where": output.where,
+        "where": "cell" if output.where == "cell" else "point",
         "components": count,
         "rows": codes[0].shape[1],
         "steps": len(codes),

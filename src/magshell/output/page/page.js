@@ -161,7 +161,7 @@ function fillMenu() {
   for (const quantity of quantities.values()) {
     const group = document.createElement("optgroup");
     group.label = quantity.name.replaceAll("_", " ") + (quantity.unit ? ` (${quantity.unit})` : "");
-    const columns = quantity.components === 1 ? [0] : [0, 1, 2, 3];
+    const columns = quantity.letters.keys();
     for (const component of columns) {
       const option = new Option(quantity.letter(component), `${quantity.name} ${component}`);
       option.title = quantity.sentence;

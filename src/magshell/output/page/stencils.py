@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from magshell.arrays import IntArray
 from magshell.output.page.arrays import text
 from magshell.output.tessellation import Tessellation
-
-if TYPE_CHECKING:
-    from magshell.mesh import Mesh
 
 MOST_PIECES = 6
 FINENESS = 160.0
 """Pieces along the side of a square of elements: some 50 000 triangles, which software draws in a fifth of a second."""
 
 
-def stencils(mesh: Mesh) -> tuple[dict[str, Any], dict[str, str]]:
-    """For each shape of element: functions `N` and derivatives `N1`, `N2` (points, nodes), and `triangles` (n, 3).
+def stencils(elements: IntArray) -> tuple[dict[str, Any], dict[str, str]]:
+    """For each shape of the elements (elements, 8): functions `N` and derivatives `N1`, `N2` (points, nodes), and `triangles` (n, 3).
 
     Returns
     -------
@@ -27,7 +25,7 @@ def stencils(mesh: Mesh) -> tuple[dict[str, Any], dict[str, str]]:
     dict of str to str
         `elements-I`, `numbers-I`: nodes and numbers of the elements of kind I.
     """
-    cells = Tessellation(mesh.elements, max(1, min(MOST_PIECES, int(FINENESS / len(mesh.elements) ** 0.5))))
+    cells = Tessellation(elements, max(1, min(MOST_PIECES, int(FINENESS / len(elements) ** 0.5))))
     kinds: list[dict[str, Any]] = []
     arrays: dict[str, str] = {}
     for i, lattice in enumerate(cells.lattices):

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from magshell.evaluation.outputs import OUTPUTS
+from magshell.evaluation.outputs import chosen
+from magshell.evaluation.patches import patches_of
 
 if TYPE_CHECKING:
     from magshell.solver.path import Path
@@ -49,5 +50,6 @@ def _telling(path: Path) -> list[int]:
 def _bytes_of_step(path: Path) -> float:
     """Of all outputs, as if each changed in every step."""
     mesh = path.discretisation.mesh
-    rows = {"point": len(mesh.points), "cell": len(mesh.elements)}
-    return BYTES_PER_NUMBER * sum(rows[output.where] * output.components for output in OUTPUTS.values())
+    rows, cells = len(patches_of(path.model.shell).nodes), len(mesh.elements)
+    outputs = chosen(path.model.outputs)
+    return BYTES_PER_NUMBER * sum((cells if output.where == "cell" else rows) * output.components for output in outputs)
