@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 
 from magshell.evaluation.converged import Converged
+from magshell.evaluation.work import Work
 from magshell.magnetics.field import UniformField
 from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.materials import MicropolarNeoHookean
 from magshell.mesh import cylinder
 from magshell.model.course import Loading
 from magshell.output import rendering
+from magshell.solver.history import History
 
 RADIUS, LENGTH = 10e-3, 16e-3
 PROBES = {"tip": (LENGTH, 0, RADIUS), 'edge, "low"': (LENGTH, RADIUS, 0)}
@@ -55,6 +57,12 @@ class FakeConverged:
     def thickness_ratio(self):
         return 1 - 20 * np.abs(self._u).mean(axis=(1, 2))
 
+    reactions = ()
+    magnetic_torque = (0.0, 0.0, 1e-6)
+
+    def work_from(self, before):
+        return Work(1e-6, 2e-6)
+
     @property
     def energies(self):
         return np.column_stack([1e-6 * np.abs(self._u).sum(axis=(1, 2)), np.zeros(len(self._u))])
@@ -83,6 +91,8 @@ class FakePath:
             field=UniformField(field),
             coupling=MicropolarCouple(),
             shell=SimpleNamespace(material=MicropolarNeoHookean(135e3, 3.25e6, 13.5e3, 9e-5), thickness=0.9e-3),
+            named_supports=(),
+            stages=[SimpleNamespace(branch=None)] * 3,
             probe_nodes={name: mesh.node_at(position) for name, position in probes.items()},
             course=lambda stage: SimpleNamespace(
                 at=lambda load_factor: Loading(np.zeros(3), np.zeros(0), np.zeros((1, 10)))
@@ -91,6 +101,7 @@ class FakePath:
         self.discretisation = FakeDiscretisation(self.model, mesh)
         self.critical_points, self.converged, self.reason = [], True, "the end of the path is reached"
         self.steps = [self._step(number, load) for number, load in enumerate(loads)]
+        self.history = History(self.discretisation)
         self.summary = {"converged": True, "reason": "", "linear_solves": np.int64(21), "cpu_seconds": 0.125}
 
     def _step(self, number, load):

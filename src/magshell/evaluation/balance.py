@@ -15,6 +15,7 @@ import numpy as np
 from magshell.arrays import FloatArray
 from magshell.equations.discretisation import Discretisation
 from magshell.evaluation.points import evaluate
+from magshell.evaluation.reactions import held_forces
 from magshell.magnetics import law
 from magshell.magnetics.law import OMEGA, M
 from magshell.model.course import Loading
@@ -96,9 +97,7 @@ def balance(discretisation: Discretisation, state: State, loading: Loading, resi
     residual : ndarray, shape (nodes, 10)
         Of that state, in the nodes' frames: at held components what the supports exert.
     """
-    constraints = discretisation.model.constraints
-    held = np.where(constraints.fixed & discretisation.carried, residual, 0.0)
-    reaction = discretisation.to_global(held)
+    reaction = held_forces(discretisation, residual)
     load = discretisation.loads.forces(state, loading.loads)
     position = discretisation.mesh.points + state.u
     director = discretisation.normals + state.w

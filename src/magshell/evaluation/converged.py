@@ -10,7 +10,10 @@ import numpy as np
 from magshell.arrays import FloatArray, IntArray
 from magshell.equations.discretisation import Assembly, Discretisation
 from magshell.equations.instant import Instant
+from magshell.evaluation.balance import Balance, magnetic_torque
 from magshell.evaluation.points import PointFields, evaluate, plane_stress_stretch
+from magshell.evaluation.reactions import Reaction, held_forces, reactions
+from magshell.evaluation.work import Acting, Work, acting, work_between
 from magshell.model.course import Loading
 from magshell.shell import rotation
 from magshell.shell.state import State
@@ -24,7 +27,17 @@ class Converged:
     discretisation : Discretisation
     state : State
     loading : Loading
+
+    Attributes
+    ----------
+    balance : Balance or None
+        Global equilibrium, where it is known.
+    work : Work or None
+        Along the path up to here, where that is known.
     """
+
+    balance: Balance | None = None
+    work: Work | None = None
 
     def __init__(self, discretisation: Discretisation, state: State, loading: Loading) -> None:
         self.discretisation, self.state, self.loading = discretisation, state, loading
@@ -39,6 +52,32 @@ class Converged:
     def energies(self) -> FloatArray:
         """Elastic and magnetic energy of each element (elements, 2), J; the couple of the field has none."""
         return self.discretisation.shell.energy(Instant(self.state, self.loading))
+
+    @cached_property
+    def support_forces(self) -> FloatArray:
+        """Forces of all supports on u, w, φ and ω (nodes, 10), global axes."""
+        return held_forces(self.discretisation, self.assembly.residual)
+
+    @cached_property
+    def reactions(self) -> list[Reaction]:
+        """Force and moment of each named support."""
+        return reactions(self.discretisation, self.state, self.support_forces)
+
+    @cached_property
+    def magnetic_torque(self) -> FloatArray:
+        """Total torque of the field (3,), N m."""
+        if self.balance is not None:
+            return self.balance.magnetic_torque
+        return magnetic_torque(self.discretisation, self.state, self.loading.flux_density)[0]
+
+    @cached_property
+    def acting(self) -> Acting:
+        """The nodal forces that do work."""
+        return acting(self.discretisation, self.state, self.loading, self.assembly.residual, self.support_forces)
+
+    def work_from(self, before: Converged) -> Work:
+        """The work from another state on the path to this one, by the trapezoidal rule."""
+        return work_between(before.acting, self.acting)
 
     @cached_property
     def fields(self) -> PointFields:
@@ -130,5 +169,7 @@ def converged(discretisation: Discretisation, reached: Reached) -> Converged:
     """
     loading = discretisation.model.course(reached.stage).at(reached.load_factor)
     loads = getattr(reached, "loads", None)
-    acting = loading._replace(flux_density=reached.flux_density, loads=loading.loads if loads is None else loads)
-    return Converged(discretisation, reached.state, acting)
+    there = loading._replace(flux_density=reached.flux_density, loads=loading.loads if loads is None else loads)
+    found = Converged(discretisation, reached.state, there)
+    found.balance = getattr(reached, "balance", None)
+    return found

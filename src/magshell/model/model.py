@@ -20,6 +20,7 @@ from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.model import symmetry
 from magshell.model.course import Amounts, Course, Loading
 from magshell.model.loads import Applied, Load
+from magshell.model.named_supports import NamedSupport, named_supports
 from magshell.model.rigid import check_supported
 from magshell.model.shell import Shell
 from magshell.model.stages import Stage
@@ -61,6 +62,8 @@ class Model:
     applied : tuple of Applied
         The loads, node by node.
     probe_nodes : mapping of str to int
+    named_supports : tuple of NamedSupport
+        The supports by the names of their reactions.
 
     Raises
     ------
@@ -79,6 +82,7 @@ class Model:
     constraints: Constraints = dataclasses.field(init=False, repr=False)
     applied: tuple[Applied, ...] = dataclasses.field(init=False, repr=False)
     probe_nodes: Mapping[str, int] = dataclasses.field(init=False, repr=False)
+    named_supports: tuple[NamedSupport, ...] = dataclasses.field(init=False, repr=False)
     _ends: tuple[Amounts, ...] = dataclasses.field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -90,6 +94,7 @@ class Model:
         put(self, "loads", tuple(self.loads))
         put(self, "stages", tuple(self.stages) or (Stage(),) * self._longest_history())
         put(self, "constraints", resolve(mesh, self.supports, self.shell.carriers, len(self.stages)))
+        put(self, "named_supports", named_supports(self.shell, self.supports))
         put(self, "applied", tuple(load.applied(self.shell, self.normals) for load in self.loads))
         nodes = {}
         for name, position in self.probes.items():
