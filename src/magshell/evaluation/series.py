@@ -78,8 +78,8 @@ SERIES: dict[str, Series] = {
         Series(
             "work",
             "J",
-            "Work along the path of loads and moving supports (`work`) and, where the coupling law has no energy, of the "
-            "field (`work_field`), by the trapezoidal rule over the steps.",
+            "Work along the path of loads and moving supports (`work`) and, where the coupling law has no energy, of "
+            "the field (`work_field`), by the trapezoidal rule over the steps.",
             lambda model: ["work", "work_field"],
             lambda converged: [None, None] if converged.work is None else list(converged.work),
         ),

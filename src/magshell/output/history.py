@@ -71,8 +71,6 @@ def table(path: Path) -> Any:
     try:
         import pandas
     except ImportError:
-        raise InputError(
-            'path.table() needs pandas, which is not installed: pip install "magshell[pandas]"'
-        ) from None
+        raise InputError('path.table() needs pandas, which is not installed: pip install "magshell[pandas]"') from None
     rows = [[math.nan if one is None else one for one in row] for row in path.history.rows(path.steps)]
     return pandas.DataFrame(rows, columns=path.history.columns)
