@@ -88,6 +88,7 @@ MOMENT = _dimension(
 )
 ACCELERATION = _dimension("acceleration", {"m/s^2": "1", "mm/s^2": "1e-3"}, {"m/s^2": 0.0})
 DENSITY = _dimension("density", {"kg/m^3": "1", "g/cm^3": "1e3"}, {"kg/m^3": 0.0})
+MASS = _dimension("mass", {"kg": "1", "g": "1e-3", "mg": "1e-6"}, {"kg": 1.0, "g": 1e-3, "mg": 0.0})
 NUMBER = Dimension("number without unit", {}, ())
 
 QUANTITIES = (

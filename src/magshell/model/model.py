@@ -20,6 +20,7 @@ from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.model import symmetry
 from magshell.model.course import Amounts, Course, Loading
 from magshell.model.loads import Applied, Load
+from magshell.model.mass import Mass, mass_of
 from magshell.model.named_supports import NamedSupport, named_supports
 from magshell.model.rigid import check_supported
 from magshell.model.shell import Shell
@@ -161,6 +162,17 @@ class Model:
         nodes = len(self.shell.mesh.points)
         state = State.undeformed(nodes, len(self.shell.mesh.elements), self.shell.element.vectors)
         return tuple(applied.forces(state) for applied in self.applied)
+
+    @cached_property
+    def mass(self) -> Mass:
+        """Mass (`total`, kg) and `centroid` (m) of the undeformed shell.
+
+        Raises
+        ------
+        InputError
+            The shell has no density.
+        """
+        return mass_of(self.shell, self.normals)
 
     def _longest_history(self) -> int:
         owners = (self.field, *self.loads, *self.supports)

@@ -15,13 +15,13 @@ from magshell.mesh.files import FileMesh
 from magshell.mesh.geometry import centres, unit
 from magshell.mesh.quality import worst
 from magshell.model import symmetry
-from magshell.model.supports import SymmetryPlane
+from magshell.model.supports import Support, SymmetryPlane
 from magshell.problem import fields, load_report, remanence_report, schema, symmetry_report, triangle_report
 from magshell.problem.building import Problem
 from magshell.problem.fields import dimension_of
 from magshell.problem.load_report import Strength
 from magshell.shell.unknowns import width
-from magshell.units import DENSITY, FLUX_DENSITY, LENGTH, NUMBER, STRESS, show
+from magshell.units import DENSITY, FLUX_DENSITY, LENGTH, MASS, NUMBER, STRESS, show
 from magshell.wording import counted, quantity
 
 VACUUM_PERMEABILITY = 4e-7 * math.pi
@@ -90,7 +90,7 @@ def describe(problem: Problem) -> Report:
             "Remanence": list(_remanence(problem, figures)),
             "Field": list(_field(problem, figures)),
             **({"Loads": list(load_report.lines(problem, strong))} if problem.file.loads else {}),
-            "Supports": list(_supports(problem)),
+            "Supports": list(_supports(problem, figures)),
             **({"Stages": list(_stages(problem))} if len(problem.model.stages) > 1 or problem.file.stages else {}),
             "Probes": list(_probes(problem, figures.extent)),
         },
@@ -172,6 +172,9 @@ def _shell(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
     yield "thickness h", show(figures.thickness, LENGTH)
     if problem.model.shell.density is not None:
         yield "density rho", show(problem.model.shell.density, DENSITY)
+        mass = problem.model.mass
+        centroid = ", ".join(_coordinate(x, figures.extent) for x in mass.centroid)
+        yield "mass", f"{show(mass.total, MASS)}, centroid at ({centroid})"
     yield "L/h", f"{figures.slenderness:.4g} with the largest extent L = {show(figures.extent, LENGTH)}"
     if math.isfinite(figures.radius):
         least = f"with the least radius of curvature R = {show(figures.radius, LENGTH)}"
@@ -226,13 +229,22 @@ def _field(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
     yield "12 |B| |Brem| / (mu0 E) (L/h)²", f"{figures.bending_load:.4g}"
 
 
-def _supports(problem: Problem) -> Iterator[tuple[str, str]]:
+def _supports(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
     planes = iter(symmetry.planes(problem.model))
     for support in problem.model.supports:
         nodes = counted(len(problem.model.shell.mesh.nodes_of(support.group)), "node")
         mirrored = isinstance(support, SymmetryPlane)
         half = symmetry_report.other_half(problem, next(planes)) if mirrored else ""
-        yield support.group, f"{support.words}, {nodes}{half}"
+        yield support.group, f"{support.words}, {nodes}{_reaction(support, figures.extent)}{half}"
+
+
+def _reaction(support: Support, extent: float) -> str:
+    """Name and point of a support's reaction, where they are given."""
+    text = "" if support.name is None else f", reaction '{support.name}'"
+    if support.point is None:
+        return text
+    point = ", ".join(_coordinate(x, extent) for x in np.asarray(support.point, dtype=float))
+    return f"{text or ', reaction'} about ({point})"
 
 
 def _stages(problem: Problem) -> Iterator[tuple[str, str]]:
