@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from solver.models import rubber
 
 import magshell as ms
 from magshell.errors import InputError
-from solver.models import rubber
 
 DENSITY = 1500.0
 

@@ -20,6 +20,7 @@ from magshell.solver.events import Observer
 
 if TYPE_CHECKING:
     from magshell.equations.discretisation import Discretisation
+    from magshell.mesh import Mesh
     from magshell.solver.buckling import BucklingMode
     from magshell.solver.critical import CriticalPoint
     from magshell.solver.path import Path
@@ -160,6 +161,13 @@ def grid(discretisation: Discretisation, step: Step | CriticalPoint | BucklingMo
     for output in OUTPUTS.values():
         data = result.point_data if output.where == "point" else result.cell_data
         data.set_array(np.array(output.evaluate(reached)), output.name)
+    annotate(result, mesh, step)
+    result.point_data.active_vectors_name = "displacement"
+    return result
+
+
+def annotate(result: Any, mesh: Mesh, step: Step | CriticalPoint | BucklingMode) -> None:
+    """Add field data: where on the path a grid is, and what its arrays are."""
     flux_density = step.flux_density
     result.field_data.update(
         {
@@ -174,8 +182,6 @@ def grid(discretisation: Discretisation, step: Step | CriticalPoint | BucklingMo
     _add_texts(result, "units", [output.unit for output in OUTPUTS.values()])
     _add_texts(result, "meanings", [output.sentence for output in OUTPUTS.values()])
     _add_texts(result, "element_group_names", mesh.element_groups)
-    result.point_data.active_vectors_name = "displacement"
-    return result
 
 
 def _add_texts(grid: Any, name: str, texts: Iterable[str]) -> None:

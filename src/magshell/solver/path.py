@@ -203,6 +203,19 @@ class Path:
         """Write every step as VTU beside a PVD file that ParaView opens."""
         drawing("save_path")(self, file)
 
+    def export(self, file: str | PathLike[str], step: int = -1) -> None:
+        """Write the deformed body with its true thickness, as a solid.
+
+        Parameters
+        ----------
+        file : path
+            `.stl`: a closed surface for printers and CAD, binary, in mm. `.vtu`: solid elements of second order, in m,
+            with every output.
+        step : int
+            Which converged step; negative counts from the last.
+        """
+        drawing("export")(self, file, step)
+
     def view(self, file: str | PathLike[str] = "view.html", color: str = "u3") -> None:
         """Write one self-contained page for a browser: shape, steps, colours, curves.
 
