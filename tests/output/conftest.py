@@ -115,6 +115,7 @@ class FakePath:
         return SimpleNamespace(
             number=number, load_factor=load, state=state, flux_density=load * self.model.field.vector,
             stage=0, arc_length=2.0 * load, negative_pivots=int(load == 0.6), loads=np.zeros(0),
+            balance=None,
         )  # fmt: skip
 
 
