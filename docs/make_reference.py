@@ -267,7 +267,7 @@ DESCRIBED = {
         for name, table in schema.load_tables().items()
     },
     **{
-        name: Described(table, SUPPORTS[name].keys, {"kind": "Which support."})
+        name: Described(table, SUPPORTS[name].all_keys(), {"kind": "Which support."})
         for name, table in schema.support_tables().items()
     },
 }

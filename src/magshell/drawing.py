@@ -17,6 +17,8 @@ HOMES = {
     "buckling_html": "magshell.output.notebook",
     "problem_html": "magshell.problem.report",
     "save_path": "magshell.output.vtu",
+    "export": "magshell.output.solid",
+    "table": "magshell.output.history",
     "write_page": "magshell.output.page",
     "animate": "magshell.output.animation",
     "draw_shape": "magshell.output.pictures",

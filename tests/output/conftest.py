@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from magshell.evaluation.converged import Converged
+from magshell.evaluation.work import Work
 from magshell.magnetics.field import UniformField
 from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.materials import MicropolarNeoHookean
@@ -16,6 +17,7 @@ from magshell.mesh import cylinder
 from magshell.model.course import Loading
 from magshell.model.shell import Shell
 from magshell.output import rendering
+from magshell.solver.history import History
 
 RADIUS, LENGTH = 10e-3, 16e-3
 PROBES = {"tip": (LENGTH, 0, RADIUS), 'edge, "low"': (LENGTH, RADIUS, 0)}
@@ -63,6 +65,12 @@ class FakeConverged:
     def resultant(self, name):
         return 5.0 * np.stack([self.state.u, -self.state.u], axis=2)
 
+    reactions = ()
+    magnetic_torque = (0.0, 0.0, 1e-6)
+
+    def work_from(self, before):
+        return Work(1e-6, 2e-6)
+
     @property
     def energies(self):
         return np.column_stack([1e-6 * np.abs(self._u).sum(axis=(1, 2)), np.zeros(len(self._u))])
@@ -92,6 +100,8 @@ class FakePath:
             coupling=MicropolarCouple(),
             shell=Shell(mesh, 0.9e-3, MicropolarNeoHookean(135e3, 3.25e6, 13.5e3, 9e-5)),
             outputs=("stress", "membrane_force"),
+            named_supports=(),
+            stages=[SimpleNamespace(branch=None)] * 3,
             probe_nodes={name: mesh.node_at(position) for name, position in probes.items()},
             course=lambda stage: SimpleNamespace(
                 at=lambda load_factor: Loading(np.zeros(3), np.zeros(0), np.zeros((1, 11)))
@@ -100,6 +110,7 @@ class FakePath:
         self.discretisation = FakeDiscretisation(self.model, mesh)
         self.critical_points, self.converged, self.reason = [], True, "the end of the path is reached"
         self.steps = [self._step(number, load) for number, load in enumerate(loads)]
+        self.history = History(self.discretisation)
         self.summary = {"converged": True, "reason": "", "linear_solves": np.int64(21), "cpu_seconds": 0.125}
 
     def _step(self, number, load):
@@ -113,6 +124,7 @@ class FakePath:
         return SimpleNamespace(
             number=number, load_factor=load, state=state, flux_density=load * self.model.field.vector,
             stage=0, arc_length=2.0 * load, negative_pivots=int(load == 0.6), loads=np.zeros(0),
+            balance=None,
         )  # fmt: skip
 
 

@@ -109,6 +109,17 @@ def test_every_kind_of_load() -> None:
     assert number(entry(report, "Loads", "12 W L / (E h³)")) == pytest.approx(weight / stiff, rel=1e-3)
     assert number(entry(report, "Loads", "p L / (E h)")) == pytest.approx(8 * extent / (young * thickness), rel=1e-3)
     assert entry(report, "Shell", "density rho") == "1200 kg/m^3"
+    assert entry(report, "Shell", "mass") == "120 mg, centroid at (10 mm, 2.5 mm, 0)"
+    assert report.sections["Shell"] != report_of(STRIP).sections["Shell"]
+
+
+def test_name_and_point_of_a_reaction() -> None:
+    clamp = 'kind = "clamp"\ngroup = "left"'
+    plain = entry(report_of(STRIP), "Supports", "left")
+    named = report_of(changed(STRIP, (clamp, f'{clamp}\nname = "foot"')))
+    assert entry(named, "Supports", "left") == f"{plain}, reaction 'foot'"
+    about = report_of(changed(STRIP, (clamp, f'{clamp}\npoint = [0, "2 mm", 0]')))
+    assert entry(about, "Supports", "left") == f"{plain}, reaction about (0, 2 mm, 0)"
 
 
 def test_a_history_counts_by_its_largest_multiplier() -> None:

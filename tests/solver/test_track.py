@@ -11,7 +11,8 @@ from hypothesis import strategies as some
 
 import magshell as ms
 from magshell import Path, solve
-from magshell.equations.instant import Increment, difference
+from magshell.equations.discretisation import Discretisation
+from magshell.equations.instant import Increment, Instant, Prediction, difference
 from magshell.shell import rotation
 from magshell.shell.state import State
 from magshell.solver.constraints import Metric

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Sequence
 from importlib.metadata import version
 
-from magshell.cli import buckling, check, examples, mesh, plot, reproduce, run, show, sweep, view
+from magshell.cli import buckling, check, examples, export, mesh, plot, reproduce, run, show, sweep, view
 from magshell.cli.console import complain
 from magshell.cli.letters import write_readably
 from magshell.cli.status import BAD_INPUT, INTERRUPTED, NOT_SOLVED
@@ -26,6 +26,7 @@ COMMANDS = {
     "sweep": sweep,
     "plot": plot,
     "view": view,
+    "export": export,
     "reproduce": reproduce,
 }
 
@@ -41,6 +42,7 @@ examples:
   magshell mesh part.step --size "0.5 mm" mesh a geometry, or say what a mesh file holds
   magshell view results                   the results as a page for a browser
   magshell plot results --animate shape.gif
+  magshell export results --out body.stl  the deformed body as a solid
   magshell sweep strip-10 --set shell.thickness="0.8,1.1 mm" --out sweep
   magshell buckling my-plate.toml --out results
   magshell reproduce --out reproduction   the source paper's examples beside what it says

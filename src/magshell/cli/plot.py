@@ -22,6 +22,7 @@ examples:
   magshell plot results                              curve.png and shape-NNNN.png of four steps, into results
   magshell plot results --color energy --steps 0,5,-1
   magshell plot results --steps all --out pictures
+  magshell plot results --curves foot.R3,foot.R1     these columns of history.csv in curve.png
   magshell plot results --animate shape.gif          besides, the path as an animation
   magshell plot results --animate shape.mp4          as a video: pip install 'magshell[video]'
 
@@ -36,6 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("directory", metavar="DIR", help="a folder that magshell run has written")
     parser.add_argument("--color", metavar="OUTPUT", default="u3", help="what colours the shapes (default: u3)")
     parser.add_argument("--steps", metavar="N,N,...", help="numbers of steps, negative from the end; or: all")
+    parser.add_argument("--curves", metavar="NAME,NAME,...", help="columns of history.csv to draw, all of one unit")
     parser.add_argument("--animate", metavar="FILE", help="also write an animation: .gif, or .mp4 with an extra")
     parser.add_argument("--out", metavar="DIR", help="folder of the pictures (default: the results folder)")
 
@@ -47,6 +49,7 @@ def run(given: argparse.Namespace) -> int:
     from magshell.output.animation import animate, draw_steps, require_writer
     from magshell.output.curve import draw_curve
     from magshell.output.rendering import RenderingUnavailable
+    from magshell.output.series import chosen
     from magshell.output.style import is_ours
     from magshell.results import is_one, read
 
@@ -55,13 +58,16 @@ def run(given: argparse.Namespace) -> int:
         require_writer(given.animate)
     path = read(given.directory).path
     steps = _steps(path, given.steps)
+    columns = [name.strip() for name in given.curves.split(",")] if given.curves else []
+    if columns:
+        chosen(path, columns)
     directory = made(pathlib.Path(given.out or given.directory))
     if not is_one(directory):
         names = ["curve.png", *(f"shape-{step.number:04d}.png" for step in steps)]
         own = [name for name in names if (directory / name).is_file() and not is_ours(directory / name)]
         refuse_to_replace(directory, own)
     out = console()
-    draw_curve(path, directory / "curve.png")
+    draw_curve(path, directory / "curve.png", columns)
     say(out, f"picture: {directory / 'curve.png'}")
     try:
         with bar(out, "drawing shapes") as advance:

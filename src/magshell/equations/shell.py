@@ -112,6 +112,10 @@ class ShellTerm:
     def energy(self, instant: Instant) -> FloatArray:
         """Elastic and magnetic energy of each element (elements, 2), J."""
         self.evaluate(instant, STATIC, None, None)
+        return self.evaluated_energy()
+
+    def evaluated_energy(self) -> FloatArray:
+        """The same at the instant that was evaluated last."""
         return self._filled.energy.copy()
 
     def load_rate(self, instant: Instant, rate: Loading) -> FloatArray:

@@ -16,6 +16,7 @@ from magshell.arrays import FloatArray
 from magshell.equations.discretisation import Discretisation
 from magshell.evaluation import points
 from magshell.evaluation.points import evaluate, level_stretch, of_couplings
+from magshell.evaluation.reactions import held_forces
 from magshell.model.course import Loading
 from magshell.shell.rotation import cross
 from magshell.shell.state import State
@@ -89,10 +90,8 @@ def balance(discretisation: Discretisation, state: State, loading: Loading, resi
     residual : ndarray, shape (nodes, 11)
         Of that state, in the nodes' frames: at held components what the supports exert.
     """
-    constraints = discretisation.model.constraints
     nodes = len(discretisation.mesh.points)
-    held = np.where(constraints.fixed & discretisation.carried, residual, 0.0)
-    reaction = discretisation.to_global(held)[:nodes]
+    reaction = held_forces(discretisation, residual)
     load = discretisation.loads.forces(state, loading.loads)[:nodes]
     position = discretisation.mesh.points + state.u[:nodes]
     director = discretisation.normals + state.w[:nodes]

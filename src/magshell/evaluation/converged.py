@@ -10,9 +10,13 @@ import numpy as np
 from magshell.arrays import FloatArray, IntArray
 from magshell.equations.discretisation import Assembly, Discretisation
 from magshell.equations.instant import Instant
-from magshell.evaluation.points import PointFields, evaluate, level_stretch, magnetic_torque, of_couplings
+from magshell.evaluation.balance import Balance, magnetic_torque
+from magshell.evaluation.points import PointFields, evaluate, level_stretch, of_couplings
+from magshell.evaluation.points import magnetic_torque as torque_of_points
+from magshell.evaluation.reactions import Reaction, held_forces, reactions
 from magshell.evaluation.resultants import Resultants
 from magshell.evaluation.strain import FACES, Deformation, Face
+from magshell.evaluation.work import Acting, Work, acting, work_between
 from magshell.model.course import Loading
 from magshell.shell import rotation
 from magshell.shell.point import INTERNAL
@@ -27,21 +31,63 @@ class Converged:
     discretisation : Discretisation
     state : State
     loading : Loading
+
+    Attributes
+    ----------
+    balance : Balance or None
+        Global equilibrium, where it is known.
+    work : Work or None
+        Along the path up to here, where that is known.
     """
+
+    balance: Balance | None = None
+    work: Work | None = None
 
     def __init__(self, discretisation: Discretisation, state: State, loading: Loading) -> None:
         self.discretisation, self.state, self.loading = discretisation, state, loading
         self.mesh = discretisation.mesh
 
-    @cached_property
+    @property
     def assembly(self) -> Assembly:
         """The residual: at held components the reactions."""
-        return self.discretisation.assemble(Instant(self.state, self.loading), tangent=False)
+        return self._evaluated[0]
 
-    @cached_property
+    @property
     def energies(self) -> FloatArray:
         """Elastic and magnetic energy of each element (elements, 2), J; the couple of the field has none."""
-        return self.discretisation.shell.energy(Instant(self.state, self.loading))
+        return self._evaluated[1]
+
+    @cached_property
+    def _evaluated(self) -> tuple[Assembly, FloatArray]:
+        """Residual and energies, of one pass over the elements."""
+        assembly = self.discretisation.assemble(Instant(self.state, self.loading), tangent=False)
+        return assembly, self.discretisation.shell.evaluated_energy()
+
+    @cached_property
+    def support_forces(self) -> FloatArray:
+        """Forces of all supports on u, w, φ and ω (nodes, 10), global axes."""
+        return held_forces(self.discretisation, self.assembly.residual)
+
+    @cached_property
+    def reactions(self) -> list[Reaction]:
+        """Force and moment of each named support."""
+        return reactions(self.discretisation, self.state, self.support_forces)
+
+    @cached_property
+    def magnetic_torque(self) -> FloatArray:
+        """Total torque of the field (3,), N m."""
+        if self.balance is not None:
+            return self.balance.magnetic_torque
+        return magnetic_torque(self.discretisation, self.state, self.loading.flux_density)[0]
+
+    @cached_property
+    def acting(self) -> Acting:
+        """The nodal forces that do work."""
+        return acting(self.discretisation, self.state, self.loading, self.assembly.residual, self.support_forces)
+
+    def work_from(self, before: Converged) -> Work:
+        """The work from another state on the path to this one, by the trapezoidal rule."""
+        return work_between(before.acting, self.acting)
 
     @cached_property
     def fields(self) -> PointFields:
@@ -86,7 +132,7 @@ class Converged:
         """Torque of the field per undeformed volume (elements, 3), N/m², mean over the element."""
         d = self.discretisation
         forces = of_couplings(d.reference, d.couplings, self.fields, self.loading.flux_density)
-        return self.mean(magnetic_torque(d.reference, self.fields, forces))
+        return self.mean(torque_of_points(d.reference, self.fields, forces))
 
     def director(self) -> FloatArray:
         """Director d = D + w (nodes, 3)."""
@@ -98,12 +144,24 @@ class Converged:
         return self._filled(self.state.phi[: len(self.mesh.points)], self.discretisation.reference.body.layout.phi)
 
     def element_directors(self) -> FloatArray:
-        """Director at the nodes of each element (elements, 8, 3), which differs between regions of other thickness."""
-        return self.director()[self.mesh.elements]
+        """Director at the nodes of each element (elements, 8, 3): where sections differ each has its own length."""
+        return (1.0 + self.element_stretch()[..., None]) * self.director()[self.mesh.elements]
+
+    def element_stretch(self) -> FloatArray:
+        """Stretch s of the director at the nodes of each element (elements, 8), zero but where sections differ."""
+        return self._of_elements(self.state.s, self.discretisation.reference.body.layout.w)
 
     def element_phi(self) -> FloatArray:
         """Thickness stretch φ at the nodes of each element (elements, 8), 1/m."""
-        return self.phi()[self.mesh.elements]
+        return self._of_elements(self.state.phi, self.discretisation.reference.body.layout.phi)
+
+    def _of_elements(self, of_rows: FloatArray, carriers: int) -> FloatArray:
+        """A field of the rows at the nodes of each element (elements, 8); its first nodes carry it."""
+        values = of_rows[self.discretisation.reference.body.elements]
+        if carriers == 4:
+            corners = values[:, :4]
+            values = np.concatenate([corners, 0.5 * (corners + np.roll(corners, -1, axis=1))], axis=1)
+        return np.asarray(values)
 
     def rotation(self) -> FloatArray:
         """Micro-rotation vector (nodes, 3), rad, of magnitude at most π."""
@@ -178,5 +236,7 @@ def converged(discretisation: Discretisation, reached: Reached) -> Converged:
     """
     loading = discretisation.model.course(reached.stage).at(reached.load_factor)
     loads = getattr(reached, "loads", None)
-    acting = loading._replace(flux_density=reached.flux_density, loads=loading.loads if loads is None else loads)
-    return Converged(discretisation, reached.state, acting)
+    there = loading._replace(flux_density=reached.flux_density, loads=loading.loads if loads is None else loads)
+    found = Converged(discretisation, reached.state, there)
+    found.balance = getattr(reached, "balance", None)
+    return found

@@ -20,6 +20,8 @@ from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.model import symmetry
 from magshell.model.course import Amounts, Course, Loading
 from magshell.model.loads import Applied, Load
+from magshell.model.loads.mass import Mass, whole_mass
+from magshell.model.named_supports import NamedSupport, named_supports
 from magshell.model.parts import REST, Part
 from magshell.model.rigid import check_supported
 from magshell.model.rows import Rows, rows_of
@@ -70,6 +72,8 @@ class Model:
     applied : tuple of Applied
         The loads, node by node.
     probe_nodes : mapping of str to int
+    named_supports : tuple of NamedSupport
+        The supports by the names of their reactions.
 
     Raises
     ------
@@ -91,6 +95,7 @@ class Model:
     constraints: Constraints = dataclasses.field(init=False, repr=False)
     applied: tuple[Applied, ...] = dataclasses.field(init=False, repr=False)
     probe_nodes: Mapping[str, int] = dataclasses.field(init=False, repr=False)
+    named_supports: tuple[NamedSupport, ...] = dataclasses.field(init=False, repr=False)
     _ends: tuple[Amounts, ...] = dataclasses.field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -106,6 +111,7 @@ class Model:
         put(self, "rows", rows_of(self.shell))
         constraints = resolve(mesh, self.supports, self.shell.carriers, len(self.stages))
         put(self, "constraints", self.rows.constraints(constraints))
+        put(self, "named_supports", named_supports(self.shell, self.supports))
         put(self, "applied", tuple(load.applied(self.shell, self.normals) for load in self.loads))
         nodes = {}
         for name, position in self.probes.items():
@@ -188,6 +194,17 @@ class Model:
         nodes = len(self.rows.of)
         state = State.undeformed(nodes, len(self.shell.mesh.elements), self.shell.element.vectors)
         return tuple(applied.forces(state) for applied in self.applied)
+
+    @cached_property
+    def mass(self) -> Mass:
+        """Mass (`total`, kg) and `centroid` (m) of the undeformed shell.
+
+        Raises
+        ------
+        InputError
+            The shell has no density.
+        """
+        return whole_mass(self.shell, self.normals)
 
     def _longest_history(self) -> int:
         owners = (self.field, *self.loads, *self.supports)

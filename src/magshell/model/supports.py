@@ -22,6 +22,11 @@ from magshell.wording import quantity, vector
 FIELDS = tuple(COLUMNS)
 DIMENSION_OF_FIELD = {"u": LENGTH, "w": NUMBER, "phi": INVERSE_LENGTH, "omega": ANGLE}
 GROUP = Key("Name", "Group of edges, nodes or elements whose nodes are held.")
+REACTION = {
+    "name": Key("Name", "Of the reaction in the results; supports of one name have one reaction.", "the group"),
+    "point": Key("Position", "Point, fixed in space, that the reaction's moment is about.", "the support's centroid"),
+}
+"""Keys that all supports have."""
 AXES = np.eye(3)
 
 
@@ -39,6 +44,7 @@ class Condition(NamedTuple):
     history: Sequence[float] | None = None
 
 
+@dataclass(frozen=True, kw_only=True)
 class Support(ABC):
     """Anything that gives conditions: a frozen dataclass that inherits from this class.
 
@@ -47,11 +53,16 @@ class Support(ABC):
     kind : str
         Its name in problem files.
     keys : mapping of str to Key
-        Its parameters.
+        Its parameters, but for those that all supports have (`REACTION`).
     mark : {"balls", "cubes"}
         How it is drawn.
     group : str
         Group of nodes, edges or elements whose nodes are held.
+    name : str, optional
+        Of its reaction; by default the group. Supports of one name have one reaction.
+    point : array_like, shape (3,), optional
+        Point, fixed in space, that the reaction's moment is about, m; by default the centroid of what the support
+        holds, where it is after the deformation.
     """
 
     kind: ClassVar[str]
@@ -59,6 +70,13 @@ class Support(ABC):
     mark: ClassVar[Literal["balls", "cubes"]] = "balls"
 
     group: str
+    name: str | None = None
+    point: ArrayLike | None = None
+
+    @classmethod
+    def all_keys(cls) -> dict[str, Key]:
+        """Its own keys and those that all supports have."""
+        return {**cls.keys, **REACTION}
 
     @abstractmethod
     def conditions(self) -> Iterator[Condition]:
@@ -70,7 +88,7 @@ class Support(ABC):
         return self.kind
 
     @property
-    def name(self) -> str:
+    def legend(self) -> str:
         """The support in pictures."""
         return self.kind
 
@@ -113,7 +131,7 @@ class SimpleSupport(Support):
     group: str
 
     @property
-    def name(self) -> str:
+    def legend(self) -> str:
         """In pictures."""
         return "simple support"
 
@@ -209,7 +227,7 @@ class Prescribe(Support):
         return f"{self.kind} {self.field}{self.component or ''} = {value}"
 
     @property
-    def name(self) -> str:
+    def legend(self) -> str:
         """In pictures."""
         return f"{self.field}{self.component or ''} given"
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from magshell.arrays import FloatArray
+from magshell.output.series import COMPONENTS, Curve, chosen
 from magshell.output.style import ACCENT, COLOURS, DPI, TEXT, TICKS, deliver
 
 if TYPE_CHECKING:
@@ -27,10 +28,11 @@ LOAD_TEXT = "10³ |B| |Bʳᵉᵐ| / (µ µ₀)"
 CRITICAL: dict[str, Any] = {
     "linestyle": "none", "marker": "D", "markersize": 7, "color": ACCENT, "markeredgecolor": "white",
 }  # fmt: skip
-LINES = (("--", "s"), (":", "^"), ("-", "o"))
 
 
-def draw_curve(path: Path, file: str | os.PathLike[str] | None = "curve.png") -> Image | None:
+def draw_curve(
+    path: Path, file: str | os.PathLike[str] | None = "curve.png", columns: Sequence[str] = ()
+) -> Image | None:
     """Draw displacement against field at every probe, with a mark at every converged step, hollow if unstable.
 
     The field is given in mT below, negative where it is reversed, and above as the load 10³ |Bext| |Brem| / (mu mu0)
@@ -43,6 +45,8 @@ def draw_curve(path: Path, file: str | os.PathLike[str] | None = "curve.png") ->
     path : Path
     file : path, optional
         PNG file to write; None to get the picture instead.
+    columns : sequence of str, optional
+        Columns of the history to draw in place of the displacements, of one unit: `tip.R3`, `elastic`.
 
     Returns
     -------
@@ -51,13 +55,15 @@ def draw_curve(path: Path, file: str | os.PathLike[str] | None = "curve.png") ->
 
     Raises
     ------
+    InputError
+        No such column, or columns of several units.
     OSError
         The disk refuses; the message names the file.
     """
-    return deliver(curve_figure(path), file)
+    return deliver(curve_figure(path, columns), file)
 
 
-def curve_figure(path: Path) -> Figure:
+def curve_figure(path: Path, columns: Sequence[str] = ()) -> Figure:
     """The picture of `draw_curve` as a matplotlib figure, to go on working on."""
     from matplotlib.figure import Figure
 
@@ -67,22 +73,26 @@ def curve_figure(path: Path) -> Figure:
     field, x = abscissa(path)
     unstable = np.array([bool(step.negative_pivots) for step in path.steps])
     _, critical = abscissa(path, path.critical_points)
-    every = displacements(path, [*path.steps, *path.critical_points])
+    if columns:
+        group = chosen(path, columns)
+        title, factor, every, critical = group.title, group.factor, group.curves, critical[:0]
+    else:
+        title, factor, every = "displacement (mm)", 1e3, displacements(path, [*path.steps, *path.critical_points])
     for curve in sorted(every, key=lambda curve: -curve.values[len(x) - 1]):
         values, at_critical = curve.values[: len(x)], curve.values[len(x) :]
         label, style = curve.label, curve.style
-        axes.plot(x, 1e3 * values, label=label, markersize=5, markeredgecolor="white", markeredgewidth=0.6, **style)
+        axes.plot(x, factor * values, label=label, markersize=5, markeredgecolor="white", markeredgewidth=0.6, **style)
         if len(critical):
-            axes.plot(critical, 1e3 * at_critical, zorder=4, **CRITICAL)
+            axes.plot(critical, factor * at_critical, zorder=4, **CRITICAL)
         hollow = {"linestyle": "none", "marker": style["marker"], "color": style["color"], "markersize": 5}
-        axes.plot(x[unstable], 1e3 * values[unstable], markerfacecolor="white", **hollow)
+        axes.plot(x[unstable], factor * values[unstable], markerfacecolor="white", **hollow)
     if len(critical):
         axes.plot([], [], label="critical point", **CRITICAL)
     if unstable.any():
         axes.plot([], [], "o", color="#6b7280", markerfacecolor="white", markersize=6, label="unstable")
     axes.axhline(0, color="#9aa3ad", linewidth=0.8, zorder=1)
     axes.set_xlabel(FIELD if field else "load factor", **TEXT)
-    axes.set_ylabel("displacement (mm)", **TEXT)
+    axes.set_ylabel(title, **TEXT)
     dress(axes)
     scale = load_per_mT(path) if field else 0.0
     if scale > 0:
@@ -110,64 +120,28 @@ def abscissa(path: Path, points: Sequence[Step | CriticalPoint] | None = None) -
     return True, np.array([1e3 * float(point.flux_density @ along) for point in points])
 
 
-class Displacement(NamedTuple):
-    """A curve worth drawing.
-
-    Attributes
-    ----------
-    name : str
-        The probe, as the user calls it.
-    component : int or None
-        1 to 3; None for the largest |u| of all nodes.
-    values : FloatArray, shape (points,)
-        m.
-    style : dict
-        For matplotlib: color, linestyle, marker, linewidth.
-    """
-
-    name: str
-    component: int | None
-    values: FloatArray
-    style: dict[str, Any]
-
-    @property
-    def label(self) -> str:
-        """For matplotlib, with mathematics."""
-        return "largest $|u|$" if self.component is None else f"{_literal(self.name)}  $u_{self.component}$"
-
-    @property
-    def letter(self) -> str:
-        """What is drawn, as text."""
-        return "|u|" if self.component is None else f"u{'₁₂₃'[self.component - 1]}"
-
-
-def displacements(path: Path, points: Sequence[Step | CriticalPoint] | None = None) -> list[Displacement]:
+def displacements(path: Path, points: Sequence[Step | CriticalPoint] | None = None) -> list[Curve]:
     """Every curve worth drawing, at points of the path or at its steps."""
     states = [point.state for point in (path.steps if points is None else points)]
     probes = {name: np.array([state.u[node] for state in states]) for name, node in path.model.probe_nodes.items()}
     if not probes:
         largest = np.array([np.linalg.norm(state.u, axis=1).max() for state in states])
         style = {"color": COLOURS[0], "linestyle": "-", "marker": "o", "linewidth": 2.0}
-        return [Displacement("largest", None, largest, style)]
+        return [Curve("largest", "|u|", None, largest, style)]
     threshold = NEGLIGIBLE * max(np.abs(u).max() for u in probes.values())
     found = []
     for number, (name, u) in enumerate(probes.items()):
-        for i, (line, marker) in enumerate(LINES):
+        for i, (line, marker) in enumerate(COMPONENTS):
             if np.abs(u[:, i]).max() >= threshold:
                 colour = COLOURS[(i if len(probes) == 1 else number) % len(COLOURS)]
                 style = {"color": colour, "linestyle": line, "marker": marker, "linewidth": 2.0}
-                found.append(Displacement(name, i + 1, u[:, i], style))
+                found.append(Curve(name, "u", i + 1, u[:, i], style))
     return found
 
 
 def curves(path: Path) -> list[tuple[str, FloatArray, dict[str, Any]]]:
     """Label, values in m and style of every curve worth drawing."""
     return [(curve.label, curve.values, curve.style) for curve in displacements(path)]
-
-
-def _literal(name: str) -> str:
-    """A user's name, safe from being read as mathematics."""
-    return name.replace("$", r"\$")
 
 
 def dress(axes: Axes) -> None:

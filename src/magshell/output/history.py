@@ -1,29 +1,32 @@
-"""`history.csv`: the load–displacement curves, one row per converged step, written as the solve goes."""
+"""`history.csv`: the load–displacement curves, one row per converged step, written as the solve goes; as a table."""
 
 from __future__ import annotations
 
+import math
 import os
 import pathlib
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from magshell.errors import InputError
 from magshell.files import append_line, csv_line, write_atomically
 from magshell.solver.events import Observer
+from magshell.solver.history import History
 
 if TYPE_CHECKING:
     from magshell.equations.discretisation import Discretisation
+    from magshell.evaluation.series import Number
     from magshell.solver.path import Path
     from magshell.solver.settings import Settings
     from magshell.solver.step import Step
 
-ABOUT = ("stage", "arc_length", "negative_pivots")
-
 
 class HistoryWriter(Observer):
-    """Write the field and the displacement of every probe at every converged step.
+    """Write the field, the displacement of every probe and the numbers of all series at every converged step.
 
     Columns: `load_factor`, `B1,B2,B3` (T), then `NAME.u1,NAME.u2,NAME.u3` (m) per probe, in the order of
     the model's probes, then `stage` (from 1), `arc_length` and `negative_pivots` (0: stable; empty where the linear
-    solver cannot tell). Numbers are written so that reading them gives the same double back.
+    solver cannot tell), then the columns of `magshell.evaluation.series`: reactions, energies, work and torque. Numbers
+    are written so that reading them gives the same double back.
 
     Parameters
     ----------
@@ -41,26 +44,33 @@ class HistoryWriter(Observer):
 
     def started(self, discretisation: Discretisation, settings: Settings) -> None:
         """Begin a new file with its heading."""
-        self._model = discretisation.model
-        write_atomically(self.file, self._heading().encode())
+        self._history = History(discretisation)
+        write_atomically(self.file, csv_line(self._history.columns).encode())
 
     def resumed(self, path: Path) -> None:
         """The rows of the steps so far, whatever the file was."""
-        self._model = path.model
-        write_atomically(self.file, "".join([self._heading(), *map(self._row, path.steps)]).encode())
+        self._history = path.history
+        lines = [csv_line(self._history.columns), *map(_line, self._history.rows(path.steps))]
+        write_atomically(self.file, "".join(lines).encode())
+
+    def kept(self, path: Path) -> None:
+        """The path has the numbers of its steps."""
+        self._history = path.history
 
     def converged(self, step: Step) -> None:
         """Append one row."""
-        append_line(self.file, self._row(step))
+        append_line(self.file, _line(self._history.row(step)))
 
-    def _heading(self) -> str:
-        probes = [f"{name}.u{i}" for name in self._model.probe_nodes for i in (1, 2, 3)]
-        return csv_line(["load_factor", "B1", "B2", "B3", *probes, *ABOUT])
 
-    def _row(self, step: Step) -> str:
-        row = [step.load_factor, *step.flux_density]
-        for node in self._model.probe_nodes.values():
-            row += step.state.u[node].tolist()
-        pivots = "" if step.negative_pivots is None else str(step.negative_pivots)
-        numbers = (repr(float(value)) for value in row)
-        return csv_line([*numbers, str(step.stage + 1), repr(float(step.arc_length)), pivots])
+def _line(row: list[Number]) -> str:
+    return csv_line(["" if number is None else repr(number) for number in row])
+
+
+def table(path: Path) -> Any:
+    """The history of a path as a pandas frame; see `Path.table`."""
+    try:
+        import pandas
+    except ImportError:
+        raise InputError('path.table() needs pandas, which is not installed: pip install "magshell[pandas]"') from None
+    rows = [[math.nan if one is None else one for one in row] for row in path.history.rows(path.steps)]
+    return pandas.DataFrame(rows, columns=path.history.columns)

@@ -6,7 +6,7 @@ from magshell.evaluation.outputs import Output
 
 _SHOWN_UNITS = {
     "m": ("mm", 1e3), "1/m": ("1/mm", 1e-3), "T": ("mT", 1e3), "J": ("µJ", 1e6), "Pa": ("kPa", 1e-3),
-    "J/m³": ("kJ/m³", 1e-3), "N/m²": ("kN/m²", 1e-3), "N": ("mN", 1e3),
+    "J/m³": ("kJ/m³", 1e-3), "N/m²": ("kN/m²", 1e-3), "N": ("mN", 1e3), "N m": ("mN mm", 1e6),
 }  # fmt: skip
 _TEX = {
     "h": "h/h_0", "phi": r"\varphi", "theta": r"\vartheta", "s": r"\sigma", "s_vm": r"\sigma_\mathrm{vM}", "s_p": r"\sigma",
@@ -22,7 +22,12 @@ _SUBSCRIPTS = str.maketrans("123", "₁₂₃")
 
 def shown_unit(output: Output) -> tuple[str, float]:
     """The unit that pictures show, and how many of it an SI unit is."""
-    return _SHOWN_UNITS.get(output.unit, (output.unit, 1.0))
+    return in_pictures(output.unit)
+
+
+def in_pictures(unit: str) -> tuple[str, float]:
+    """The unit that pictures show for one of SI, and how many of it that is."""
+    return _SHOWN_UNITS.get(unit, (unit, 1.0))
 
 
 def tex(output: Output, component: int | None) -> str:

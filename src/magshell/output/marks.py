@@ -222,7 +222,7 @@ def support_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:
         width = min(0.016 * size, 0.7 * _closest(mesh.points[nodes]))
         solids = Solids[support.mark.upper()]
         wider = width if solids is Solids.CUBES else 0.85 * width
-        name = f"{support.group}: {support.name}"
+        name = f"{support.group}: {support.legend}"
         colour = SUPPORTS[number % len(SUPPORTS)]
         marks.append(Mark(name, colour, solids, mesh.points[nodes] + 0.3 * width * axes[2], width=wider))
     return marks

@@ -13,7 +13,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from magshell.evaluation.converged import converged
-from magshell.evaluation.outputs import chosen
+from magshell.evaluation.outputs import Output, chosen
 from magshell.evaluation.patches import patches_of
 from magshell.files import naming, refuse_somebodys, with_suffix, write_atomically
 from magshell.shell.triangle import REPEATED, SLOTS
@@ -21,6 +21,7 @@ from magshell.solver.events import Observer
 
 if TYPE_CHECKING:
     from magshell.equations.discretisation import Discretisation
+    from magshell.mesh import Mesh
     from magshell.solver.buckling import BucklingMode
     from magshell.solver.critical import CriticalPoint
     from magshell.solver.path import Path
@@ -166,6 +167,14 @@ def grid(discretisation: Discretisation, step: Step | CriticalPoint | BucklingMo
         values = np.array(output.evaluate(reached))
         data.set_array(values[patches.nodes] if output.where == "point" else values, output.name)
     result.point_data.set_array(patches.nodes, "node")
+    annotate(result, mesh, step, outputs)
+    result.point_data.active_vectors_name = "displacement"
+    return result
+
+
+def annotate(result: Any, mesh: Mesh, step: Step | CriticalPoint | BucklingMode, outputs: Iterable[Output]) -> None:
+    """Add field data: where on the path a grid is, and what its arrays are."""
+    outputs = tuple(outputs)
     flux_density = step.flux_density
     result.field_data.update(
         {
@@ -180,8 +189,6 @@ def grid(discretisation: Discretisation, step: Step | CriticalPoint | BucklingMo
     _add_texts(result, "units", [output.unit for output in outputs])
     _add_texts(result, "meanings", [output.sentence for output in outputs])
     _add_texts(result, "element_group_names", mesh.element_groups)
-    result.point_data.active_vectors_name = "displacement"
-    return result
 
 
 def _add_texts(grid: Any, name: str, texts: Iterable[str]) -> None:

@@ -105,7 +105,7 @@ def doubts(problem: Problem, strong: Strength) -> Iterator[str]:
             what = "lighter than a foam" if density < 10.0 else "heavier than any metal"
             yield f"the density is {density:.3g} kg/m^3: {what}; check shell.density"
     if known and not strong.weight:
-        yield "there is a density but no gravity: the density does nothing"
+        yield "there is a density but no gravity: it is used for the mass alone"
     beyond = "beyond any experiment; check the units"
     if strong.bending > 1e5:
         yield f"12 (F L + M) / (E h³) is {strong.bending:.2g}: loads {beyond}"

@@ -8,7 +8,7 @@ import numpy as np
 
 from magshell.arrays import IntArray
 from magshell.materials import MATERIALS
-from magshell.model.loads.mass import mass_of
+from magshell.model.loads.mass import part_mass
 from magshell.model.parts import Part
 from magshell.model.region import Layer
 from magshell.model.words import name_of, offset_of, thickness_of
@@ -28,7 +28,7 @@ def lines(problem: Problem) -> Iterator[tuple[str, str]]:
     """Label and text for each region and each of its layers."""
     shell = problem.model.shell
     for part in shell.parts:
-        mass = mass_of(part, shell, problem.model.normals)
+        mass = part_mass(part, shell, problem.model.normals)
         yield (
             name_of(part),
             f"{counted(len(part.elements), 'element')}, thickness {thickness_of(part)}{offset_of(part)}"

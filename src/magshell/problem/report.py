@@ -14,7 +14,7 @@ from magshell.mesh.files import FileMesh
 from magshell.mesh.geometry import centres, unit
 from magshell.mesh.quality import worst
 from magshell.model import symmetry
-from magshell.model.supports import SymmetryPlane
+from magshell.model.supports import Support, SymmetryPlane
 from magshell.model.words import offset_of, span
 from magshell.problem import (
     fields,
@@ -29,7 +29,7 @@ from magshell.problem.building import Problem
 from magshell.problem.fields import dimension_of
 from magshell.problem.load_report import Strength
 from magshell.shell.unknowns import width
-from magshell.units import DENSITY, FLUX_DENSITY, LENGTH, NUMBER, STRESS, show
+from magshell.units import DENSITY, FLUX_DENSITY, LENGTH, MASS, NUMBER, STRESS, show
 from magshell.wording import counted, quantity
 
 VACUUM_PERMEABILITY = 4e-7 * math.pi
@@ -144,7 +144,7 @@ def describe(problem: Problem) -> Report:
             "Remanence": list(_remanence(problem, figures)),
             "Field": list(_field(problem, figures)),
             **({"Loads": list(load_report.lines(problem, strong))} if problem.file.loads else {}),
-            "Supports": list(_supports(problem)),
+            "Supports": list(_supports(problem, figures)),
             **({"Stages": list(_stages(problem))} if len(problem.model.stages) > 1 or problem.file.stages else {}),
             "Probes": list(_probes(problem, figures.extent)),
         },
@@ -247,8 +247,12 @@ def _shell(problem: Problem, figures: _Whole) -> Iterator[tuple[str, str]]:
     offset = offset_of(shell.parts[0]) if len(shell.parts) == 1 else ""
     yield "thickness h", span(np.array([least, greatest])) + offset
     densities = {layer.density for part in shell.parts for layer in part.layers}
-    if len(densities) == 1 and (density := densities.pop()) is not None:
+    if len(densities) == 1 and (density := densities.copy().pop()) is not None:
         yield "density rho", show(density, DENSITY)
+    if None not in densities:
+        mass = problem.model.mass
+        centroid = ", ".join(_coordinate(x, figures.extent) for x in mass.centroid)
+        yield "mass", f"{show(mass.total, MASS)}, centroid at ({centroid})"
     thin = "" if uniform else " where it is thinnest"
     slenderness = figures.extent / least
     yield "L/h", f"{slenderness:.4g}{thin} with the largest extent L = {show(figures.extent, LENGTH)}"
@@ -313,13 +317,22 @@ def _field(problem: Problem, figures: _Whole) -> Iterator[tuple[str, str]]:
     yield "12 |B| |Brem| / (mu0 E) (L/h)²", f"{figures.bending_load:.4g}"
 
 
-def _supports(problem: Problem) -> Iterator[tuple[str, str]]:
+def _supports(problem: Problem, figures: _Whole) -> Iterator[tuple[str, str]]:
     planes = iter(symmetry.planes(problem.model))
     for support in problem.model.supports:
         nodes = counted(len(problem.model.shell.mesh.nodes_of(support.group)), "node")
         mirrored = isinstance(support, SymmetryPlane)
         half = symmetry_report.other_half(problem, next(planes)) if mirrored else ""
-        yield support.group, f"{support.words}, {nodes}{half}"
+        yield support.group, f"{support.words}, {nodes}{_reaction(support, figures.extent)}{half}"
+
+
+def _reaction(support: Support, extent: float) -> str:
+    """Name and point of a support's reaction, where they are given."""
+    text = "" if support.name is None else f", reaction '{support.name}'"
+    if support.point is None:
+        return text
+    point = ", ".join(_coordinate(x, extent) for x in np.asarray(support.point, dtype=float))
+    return f"{text or ', reaction'} about ({point})"
 
 
 def _stages(problem: Problem) -> Iterator[tuple[str, str]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from os import PathLike
 from typing import Any, NamedTuple
 
@@ -16,6 +17,7 @@ from magshell.evaluation.balance import largest_imbalances
 from magshell.model.course import Course, Loading
 from magshell.model.model import Model
 from magshell.solver.critical import CriticalPoint
+from magshell.solver.history import History
 from magshell.solver.settings import Settings
 from magshell.solver.step import Step
 from magshell.solver.waypoint import Waypoint
@@ -116,6 +118,26 @@ class Path:
         flux_density = np.array([step.flux_density for step in self.steps])
         return Probe(factors, flux_density, np.array([step.state.u[node] for step in self.steps]))
 
+    @cached_property
+    def history(self) -> History:
+        """The rows of `history.csv`, step by step."""
+        return History(self.discretisation, self.critical_points)
+
+    def table(self) -> Any:
+        """The history as a pandas frame: a row for each converged step, the columns of `history.csv`.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Empty cells are NaN.
+
+        Raises
+        ------
+        InputError
+            pandas is not installed; the message says how to install it.
+        """
+        return drawing("table")(self)
+
     def loading(self, step: Step) -> Loading:
         """What acts on the shell at a step."""
         return self.courses[step.stage].at(step.load_factor)
@@ -158,11 +180,41 @@ class Path:
             "force_imbalance": force,
             "moment_imbalance": moment,
             "probes": {name: self.probe(name).u[-1].tolist() for name in self.model.probe_nodes} if last else {},
+            **(self._reached(last) if last else {}),
+        }
+
+    def _reached(self, last: Step) -> dict[str, Any]:
+        """Reactions, energies, work and torque at the last step, for the summary."""
+        self.history.rows(self.steps)
+        numbers = dict(zip(self.history.columns, self.history.row(last), strict=True))
+        kinds = {"force": "R", "moment": "M"}
+        return {
+            "reactions": {
+                support.name: {
+                    kind: [numbers[f"{support.name}.{letter}{i}"] for i in (1, 2, 3)] for kind, letter in kinds.items()
+                }
+                for support in self.model.named_supports
+            },
+            **{name: numbers[name] for name in ("elastic", "magnetic", "work", "work_field")},
+            "magnetic_torque": [numbers[f"torque{i}"] for i in (1, 2, 3)],
         }
 
     def save(self, file: str | PathLike[str]) -> None:
         """Write every step as VTU beside a PVD file that ParaView opens."""
         drawing("save_path")(self, file)
+
+    def export(self, file: str | PathLike[str], step: int = -1) -> None:
+        """Write the deformed body with its true thickness, as a solid.
+
+        Parameters
+        ----------
+        file : path
+            `.stl`: a closed surface for printers and CAD, binary, in mm. `.vtu`: solid elements of second order, in m,
+            with every output.
+        step : int
+            Which converged step; negative counts from the last.
+        """
+        drawing("export")(self, file, step)
 
     def view(self, file: str | PathLike[str] = "view.html", color: str = "u3") -> None:
         """Write one self-contained page for a browser: shape, steps, colours, curves.

@@ -12,6 +12,8 @@ micro-rotation linear where only corners carry it.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
@@ -56,6 +58,25 @@ def shares(shell: Shell, group: str, field: str) -> FloatArray:
             raise InputError(f"node {members[0]} is a mid-side node and carries no rotation; it needs corner nodes")
         parts[carrying] = 1.0
     return parts / parts.sum()
+
+
+def centroid_weights(shell: Shell, groups: Sequence[str]) -> FloatArray:
+    """Weights (nodes,) whose mean of positions is the centroid of some groups; they sum to one.
+
+    Groups of edges count by their length, groups of elements by their area, nodes one by one; so do groups of different
+    kinds together.
+    """
+    mesh = shell.mesh
+    weights = np.zeros(len(mesh.points))
+    if all(group in mesh.edge_groups for group in groups):
+        edges = np.unique(np.concatenate([mesh.edge_groups[group] for group in groups]), axis=0)
+        np.add.at(weights, edges, _along_edges(mesh.points[edges], quadratic=True))
+    elif all(group in mesh.element_groups for group in groups):
+        members = np.unique(np.concatenate([mesh.element_groups[group] for group in groups]))
+        weights = nodal_areas(shell, members)
+    else:
+        weights[np.concatenate([mesh.nodes_of(group) for group in groups])] = 1.0
+    return np.asarray(weights / weights.sum())
 
 
 def nodal_areas(shell: Shell, members: IntArray) -> FloatArray:

@@ -12,6 +12,7 @@ the thickness over the radius of curvature. Acceleration g does the work ∫ rho
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -57,39 +58,82 @@ def nodal_masses(shell: Shell, normals: FloatArray, members: IntArray) -> Masses
     for part in shell.parts:
         rows = np.flatnonzero(chosen[part.elements])
         if rows.size:
-            _check_density(part)
+            _check_density(part, "gravity")
             _add(masses, shell, part, rows, normals)
     return masses
 
 
-def mass_of(part: Part, shell: Shell, normals: FloatArray) -> float | None:
+class Mass(NamedTuple):
+    """Of the undeformed shell.
+
+    Attributes
+    ----------
+    total : float
+        kg.
+    centroid : ndarray, shape (3,)
+        m.
+    """
+
+    total: float
+    centroid: FloatArray
+
+
+def whole_mass(shell: Shell, normals: FloatArray) -> Mass:
+    """Mass and centroid of a shell with unit normals (nodes, 3).
+
+    Raises
+    ------
+    InputError
+        A part has no density.
+    """
+    total, moment = 0.0, np.zeros(3)
+    for part in shell.parts:
+        _check_density(part, "the mass")
+        for layer in _layers_of(shell, part, np.arange(len(part.elements)), normals):
+            total += float(layer.masses.sum())
+            moment += np.einsum("ep,epx->x", layer.masses, layer.x) + np.einsum("ep,epx->x", layer.levers, layer.D)
+    return Mass(total, moment / total)
+
+
+def part_mass(part: Part, shell: Shell, normals: FloatArray) -> float | None:
     """Mass of a part, kg; None if a density is missing."""
     if any(layer.density is None for layer in part.layers):
         return None
     return float(nodal_masses(shell, normals, part.elements).on_u.sum())
 
 
-def _check_density(part: Part) -> None:
+def _check_density(part: Part, user: str) -> None:
     for number, layer in enumerate(part.layers):
         if layer.density is None:
             where = REST if part.name == REST else f"region '{part.name}'"
             of_layer = f": layers[{number}]" if part.layered else ""
-            raise InputError(f"{where}{of_layer}: density is missing; gravity needs it")
+            raise InputError(f"{where}{of_layer}: density is missing; {user} needs it")
 
 
-def _add(masses: Masses, shell: Shell, part: Part, rows: IntArray, normals: FloatArray) -> None:
-    """The masses of some elements of a part, by its rows."""
+class _Layer(NamedTuple):
+    """A layer at the points of some elements: masses and first moments about the mesh (e, p), positions, normals."""
+
+    masses: FloatArray
+    moments: FloatArray
+    levers: FloatArray
+    x: FloatArray
+    D: FloatArray
+
+
+def _layers_of(shell: Shell, part: Part, rows: IntArray, normals: FloatArray) -> Iterator[_Layer]:
+    """The layers of some elements of a part, by its rows; moments with the term in a alone, levers with all."""
     element, elements = shell.element, shell.mesh.elements[part.elements[rows]]
-    x = shell.mesh.points[elements]
+    nodes = shell.mesh.points[elements]
     points, weights = gauss_legendre(POINTS)
-    functions = element.functions(8, points, x)
-    rest = element.functions(element.rest_nodes, points, x)
+    functions = element.functions(8, points, nodes)
+    rest = element.functions(element.rest_nodes, points, nodes)
     ends = normals[elements[:, : element.rest_nodes]]
     director = director_functions(ends, rest.values, rest.derivatives)
-    A = np.einsum("epan,enx->epax", functions.derivatives, x)
+    x = np.einsum("epn,enx->epx", functions.values, nodes)
+    A = np.einsum("epan,enx->epax", functions.derivatives, nodes)
     D, dD = np.einsum("epn,enx->epx", director[:, :, 0], ends), np.einsum("epan,enx->epax", director[:, :, 1:], ends)
     a, b, c = (
-        np.einsum("epx,epx->ep", normal, D)
+        np.einsum("epx,epx->ep", normal, D) * weights
         for normal in (
             np.cross(A[:, :, 0], A[:, :, 1]),
             np.cross(A[:, :, 0], dD[:, :, 1]) + np.cross(dD[:, :, 0], A[:, :, 1]),
@@ -106,13 +150,29 @@ def _add(masses: Masses, shell: Shell, part: Part, rows: IntArray, normals: Floa
     )
     offset = np.einsum("epn,en->ep", functions.values, part.offset_at_nodes[rows])
     below = -0.5 * heights.sum(axis=0) - offset
-    mass, moment = np.zeros(a.shape), np.zeros(a.shape)
     for layer, height in zip(part.layers, heights, strict=True):
+        assert layer.density is not None
         above = below + height
-        first = 0.5 * (above**2 - below**2)
-        mass += layer.density * (height * a + first * b + (above**3 - below**3) / 3.0 * c)
-        moment += layer.density * first * a
+        zeroth, first, second, third = ((above**n - below**n) / n for n in (1, 2, 3, 4))
+        yield _Layer(
+            layer.density * (zeroth * a + first * b + second * c),
+            layer.density * first * a,
+            layer.density * (first * a + second * b + third * c),
+            x,
+            D,
+        )
         below = above
-    np.add.at(masses.on_u, elements, np.einsum("ep,p,epn->en", mass, weights, loaded(element, points, x).values))
-    on_w = np.einsum("ep,p,epn->en", moment, weights, director[:, :, 0])
-    np.add.at(masses.on_w, elements[:, : element.rest_nodes], on_w)
+
+
+def _add(masses: Masses, shell: Shell, part: Part, rows: IntArray, normals: FloatArray) -> None:
+    """The masses of some elements of a part, by its rows."""
+    element, elements = shell.element, shell.mesh.elements[part.elements[rows]]
+    nodes, (points, _) = shell.mesh.points[elements], gauss_legendre(POINTS)
+    carried = loaded(element, points, nodes).values
+    rest = element.functions(element.rest_nodes, points, nodes)
+    ends = normals[elements[:, : element.rest_nodes]]
+    director = director_functions(ends, rest.values, rest.derivatives)[:, :, 0]
+    for layer in _layers_of(shell, part, rows, normals):
+        np.add.at(masses.on_u, elements, np.einsum("ep,epn->en", layer.masses, carried))
+        on_w = np.einsum("ep,epn->en", layer.moments, director)
+        np.add.at(masses.on_w, elements[:, : element.rest_nodes], on_w)

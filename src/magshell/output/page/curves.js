@@ -1,4 +1,4 @@
-// The curves of the probes as SVG through all steps: a mark at every step of the page, hollow where unstable, a ring at
+// The curves of the probes or of another series as SVG through all steps: a mark at every step of the page, hollow where unstable, a ring at
 // the present one.
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -21,16 +21,26 @@ const DASHES = { "-": "none", "--": "7 4", ":": "2 3" };
 
 class Curves {
   // `steps` are those of the page; their numbers are their places in `about.x` and in `y` of each line.
-  constructor(plot, legend, about, steps, chosen) {
-    Object.assign(this, { plot, about, steps });
+  // Of the groups of curves, the first is shown at first; the others say what differs from it.
+  constructor(plot, legend, groups, steps, chosen) {
+    Object.assign(this, { plot, legend, groups, steps });
     plot.addEventListener("click", (event) => {
       const step = this.nearest(event);
       if (step !== null) chosen(step);
     });
+    this.show(0);
+    new ResizeObserver(() => this.draw()).observe(plot);
+  }
+
+  // Make another group the shown one.
+  show(group) {
+    const { legend, groups, steps } = this;
+    const about = this.about = { ...groups[0], ...groups[group] };
+    legend.replaceChildren();
     for (const line of about.lines) this.explain(legend, line);
     if (steps.some((step) => step.unstable)) this.remark(legend, MARKS.o, "hollow", "unstable");
     if (about.critical.length) this.remark(legend, MARKS.D, "critical", "critical point");
-    new ResizeObserver(() => this.draw()).observe(plot);
+    this.draw();
   }
 
   explain(legend, { label, component, colour, dash, marker }) {
@@ -39,7 +49,7 @@ class Curves {
     svg(sample, "path", { d: "M1,7H33", "stroke-dasharray": DASHES[dash], class: "stroke" });
     svg(sample, "path", { d: MARKS[marker], transform: "translate(17 7)", class: "mark" });
     const name = document.createElement("span");
-    name.textContent = `${label} ${component}`;
+    name.textContent = `${label} ${component}`.trim();
     item.append(name);
     legend.append(item);
   }

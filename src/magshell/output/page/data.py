@@ -16,6 +16,7 @@ from magshell.output.page.arrays import quantised, span, text
 from magshell.output.page.stencils import stencils
 from magshell.output.rounding import without_round_off
 from magshell.output.scene import best_axes
+from magshell.output.series import Curve, groups
 from magshell.output.skin import MOST_ELEMENTS_WITH_EDGES
 from magshell.output.tessellation import element_edges
 
@@ -93,6 +94,7 @@ def collect(path: Path, steps: Sequence[Step], color: str, advance: Callable[[fl
         "strongest": max(magnitudes),
         "stages": path.steps[-1].stage + 1,
         "curves": curves(path),
+        "series": series(path),
     }
     return Data(header, arrays)
 
@@ -151,21 +153,12 @@ def curves(path: Path) -> dict[str, Any]:
     scale = load_per_mT(path) if field else 0.0
     _, critical = abscissa(path, path.critical_points)
     return {
+        "name": "displacement",
         "x": x.tolist(),
         "xlabel": "|B| (mT)" if field else "load factor",
         "ylabel": "displacement (mm)",
         "above": {"factor": scale, "label": LOAD_TEXT} if scale > 0 else None,
-        "lines": [
-            {
-                "label": curve.name,
-                "component": curve.letter,
-                "colour": curve.style["color"],
-                "dash": curve.style["linestyle"],
-                "marker": curve.style["marker"],
-                "y": (1e3 * curve.values[: len(x)]).tolist(),
-            }
-            for curve in drawn
-        ],
+        "lines": [_line(curve, 1e3 * curve.values[: len(x)]) for curve in drawn],
         "critical": [
             {
                 "x": float(place),
@@ -174,6 +167,30 @@ def curves(path: Path) -> dict[str, Any]:
             }
             for number, (place, point) in enumerate(zip(critical, path.critical_points, strict=True))
         ],
+    }
+
+
+def series(path: Path) -> list[dict[str, Any]]:
+    """What differs from `curves` for each group of `magshell.output.series`."""
+    return [
+        {
+            "name": group.name,
+            "ylabel": group.title,
+            "lines": [_line(curve, group.factor * curve.values) for curve in group.curves],
+            "critical": [],
+        }
+        for group in groups(path)
+    ]
+
+
+def _line(curve: Curve, values: FloatArray) -> dict[str, Any]:
+    return {
+        "label": curve.name,
+        "component": curve.letter,
+        "colour": curve.style["color"],
+        "dash": curve.style["linestyle"],
+        "marker": curve.style["marker"],
+        "y": values.tolist(),
     }
 
 

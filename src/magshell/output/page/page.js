@@ -172,6 +172,14 @@ function fillMenu() {
   menu.value = header.colour;
 }
 
+// Displacements, and the other series of the history.
+const groups = [header.curves, ...header.series];
+
+function fillCurves() {
+  groups.forEach(({ name }, i) => at("curve").append(new Option(name, i)));
+  at("which").hidden = groups.length < 2;
+}
+
 function choose() {
   const [name, component] = at("colour").value.split(" ");
   state.quantity = quantities.get(name);
@@ -181,6 +189,7 @@ function choose() {
 function listen() {
   at("colour").addEventListener("change", () => { choose(); showColours(); });
   at("range").addEventListener("change", showColours);
+  at("curve").addEventListener("change", () => curves.show(Number(at("curve").value)));
   for (const id of ["edges", "arrows", "undeformed"]) at(id).addEventListener("change", showShape);
   at("slider").addEventListener("input", () => { play(false); go(Number(at("slider").value)); });
   at("play").addEventListener("click", () => play(!playing));
@@ -206,6 +215,7 @@ function listen() {
 at("slider").max = header.steps.length - 1;
 at("edges").checked = header.edges;
 fillMenu();
+fillCurves();
 choose();
 try {
   startShape();
@@ -213,6 +223,6 @@ try {
   scene = null;
   at("message").textContent = `This browser cannot draw the shape: ${error.message}.`;
 }
-curves = new Curves(at("plot"), at("legend"), header.curves, header.steps, (step) => { play(false); go(step); });
+curves = new Curves(at("plot"), at("legend"), groups, header.steps, (step) => { play(false); go(step); });
 listen();
 go(state.step);

@@ -118,7 +118,7 @@ def _supports(tables: tuple[schema.SupportTable, ...], mesh: Mesh) -> list[Suppo
             mesh.nodes_of(table.group)
         with at(f"supports[{number}]"):
             cls = SUPPORTS[table.kind]
-            supports.append(cls(**{key: getattr(table, key) for key in cls.keys}))
+            supports.append(cls(**{key: getattr(table, key) for key in cls.all_keys()}))
     return supports
 
 

@@ -143,7 +143,7 @@ def load_tables() -> dict[str, type[Table]]:
 
 def support_tables() -> dict[str, type[Table]]:
     """The tables of all supports, by kind."""
-    return {name: table_of("kind", name, one, one.keys, SupportTable) for name, one in SUPPORTS.items()}
+    return {name: table_of("kind", name, one, one.all_keys(), SupportTable) for name, one in SUPPORTS.items()}
 
 
 def problem_file() -> type[ProblemFile]:

@@ -1,0 +1,105 @@
+"""What a path's history holds of each step: every number that `history.csv`, tables and curves show, named once.
+
+A new one is one entry in `SERIES`. Field, probes and what only the path knows stand before them in the files.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from magshell.evaluation.converged import Converged
+from magshell.magnetics.law import is_conservative
+from magshell.model.model import Model
+from magshell.shell.point import INTERNAL, MAGNETIC
+
+Number = float | None
+
+
+@dataclass(frozen=True)
+class Series:
+    """Numbers of a state that belong together.
+
+    Attributes
+    ----------
+    name : str
+        In menus.
+    unit : str
+        SI, empty for a pure number.
+    sentence : str
+        What they are.
+    columns : callable
+        From the model to the names of the columns.
+    evaluate : callable
+        From what has converged to as many numbers; None where there is none, which stays empty.
+    """
+
+    name: str
+    unit: str
+    sentence: str
+    columns: Callable[[Model], Sequence[str]]
+    evaluate: Callable[[Converged], Sequence[Number]]
+
+
+def _of_supports(letter: str) -> Callable[[Model], Sequence[str]]:
+    return lambda model: [f"{support.name}.{letter}{i}" for support in model.named_supports for i in (1, 2, 3)]
+
+
+def _magnetic(converged: Converged) -> Number:
+    if not is_conservative(converged.discretisation.model.coupling):
+        return None
+    return float(converged.energies[:, MAGNETIC].sum())
+
+
+SERIES: dict[str, Series] = {
+    series.name: series
+    for series in (
+        Series(
+            "reaction force",
+            "N",
+            "Force that a support exerts on the shell: `NAME.R1`, `R2`, `R3`.",
+            _of_supports("R"),
+            lambda converged: [float(number) for one in converged.reactions for number in one.force],
+        ),
+        Series(
+            "reaction moment",
+            "N m",
+            "Moment that it exerts, about its centroid or its `point`: `NAME.M1`, `M2`, `M3`.",
+            _of_supports("M"),
+            lambda converged: [float(number) for one in converged.reactions for number in one.moment],
+        ),
+        Series(
+            "energy",
+            "J",
+            "Elastic energy of the shell, and magnetic energy where the coupling law has one.",
+            lambda model: ["elastic", "magnetic"],
+            lambda converged: [float(converged.energies[:, INTERNAL].sum()), _magnetic(converged)],
+        ),
+        Series(
+            "work",
+            "J",
+            "Work along the path of loads and moving supports (`work`) and, where the coupling law has no energy, of "
+            "the field (`work_field`), by the trapezoidal rule over the steps.",
+            lambda model: ["work", "work_field"],
+            lambda converged: [None, None] if converged.work is None else list(converged.work),
+        ),
+        Series(
+            "magnetic torque",
+            "N m",
+            "Total torque of the field on the shell.",
+            lambda model: ["torque1", "torque2", "torque3"],
+            lambda converged: [float(number) for number in converged.magnetic_torque],
+        ),
+    )
+}
+"""The series, by name, in the order of the files."""
+
+
+def columns(model: Model) -> list[str]:
+    """The columns of all series."""
+    return [column for series in SERIES.values() for column in series.columns(model)]
+
+
+def evaluated(converged: Converged) -> list[Number]:
+    """The numbers of all series."""
+    return [number for series in SERIES.values() for number in series.evaluate(converged)]

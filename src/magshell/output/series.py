@@ -1,0 +1,170 @@
+"""Curves of the history: its series as groups of lines that pictures and pages show."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from magshell.arrays import FloatArray
+from magshell.errors import InputError, suggest
+from magshell.evaluation.series import SERIES
+from magshell.output.labels import in_pictures
+from magshell.output.style import COLOURS
+
+if TYPE_CHECKING:
+    from magshell.solver.path import Path
+
+# Line and mark of components 1 to 3.
+COMPONENTS = (("--", "s"), (":", "^"), ("-", "o"))
+# Of the sum of the magnitudes that balance each other: what round-off leaves of them.
+ROUND_OFF = 1e-9
+_NUMBERED = re.compile(r"(.*[^\d])([123])")
+
+
+class Curve(NamedTuple):
+    """A line against the field or the load factor.
+
+    Attributes
+    ----------
+    name : str
+        Whose it is, as the user calls it; empty: of the whole shell.
+    symbol : str
+    component : int or None
+        1 to 3.
+    values : FloatArray, shape (points,)
+        SI.
+    style : dict
+        For matplotlib: color, linestyle, marker, linewidth.
+    """
+
+    name: str
+    symbol: str
+    component: int | None
+    values: FloatArray
+    style: dict[str, Any]
+
+    @property
+    def label(self) -> str:
+        """For matplotlib, with mathematics."""
+        if self.symbol == "|u|":
+            return f"{self.name} $|u|$"
+        symbol = self.symbol.replace("_", " ")
+        if self.component is not None:
+            letter = symbol if len(symbol) == 1 else rf"\mathrm{{{symbol}}}"
+            symbol = f"${letter}_{self.component}$"
+        return f"{_literal(self.name)}  {symbol}".strip()
+
+    @property
+    def letter(self) -> str:
+        """What is drawn, as text."""
+        return self.symbol if self.component is None else f"{self.symbol}{'₁₂₃'[self.component - 1]}"
+
+
+class Group(NamedTuple):
+    """Curves of one unit.
+
+    Attributes
+    ----------
+    name : str
+    unit : str
+        Shown.
+    factor : float
+        How many of it an SI unit is.
+    curves : list of Curve
+    """
+
+    name: str
+    unit: str
+    factor: float
+    curves: list[Curve]
+
+    @property
+    def title(self) -> str:
+        """Of the axis."""
+        return f"{self.name} ({self.unit})" if self.unit else self.name
+
+
+def groups(path: Path) -> list[Group]:
+    """All series of the history that have something to show: no empty columns, and no round-off."""
+    numbers = _numbers(path)
+    found = []
+    for series in SERIES.values():
+        columns = {name: numbers[name] for name in series.columns(path.model)}
+        known = {name: values for name, values in columns.items() if np.isfinite(values).all()}
+        largest = max((float(np.abs(values).max()) for values in known.values()), default=0.0)
+        least = max(ROUND_OFF * _scale(path, series.unit), ROUND_OFF * largest)
+        told = {name: values for name, values in known.items() if np.abs(values).max() > least}
+        if told:
+            unit, factor = in_pictures(series.unit)
+            found.append(Group(series.name, unit, factor, _curves(told)))
+    return found
+
+
+def chosen(path: Path, names: Sequence[str]) -> Group:
+    """Columns of the history as one group.
+
+    Raises
+    ------
+    InputError
+        No such column, columns of several units, or one without numbers.
+    """
+    of = {name: series for series in SERIES.values() for name in series.columns(path.model)}
+    units = {f"{probe}.u{i}": "m" for probe in path.model.probe_nodes for i in (1, 2, 3)}
+    units |= {name: series.unit for name, series in of.items()}
+    for name in names:
+        if name not in units:
+            raise InputError(f"There is no curve '{name}'. {suggest(name, units)}")
+    first = names[0]
+    for name in names:
+        if units[name] != units[first]:
+            said = [f"'{one}' is {f'in {units[one]}' if units[one] else 'a number'}" for one in (first, name)]
+            raise InputError(f"{' and '.join(said)}; the curves of one picture have one unit")
+    numbers = _numbers(path)
+    for name in names:
+        if not np.isfinite(numbers[name]).all():
+            raise InputError(f"'{name}' is empty for this problem. {of[name].sentence if name in of else ''}".strip())
+    kinds = {of[name].name if name in of else "displacement" for name in names}
+    unit, factor = in_pictures(units[first])
+    return Group(", ".join(sorted(kinds)), unit, factor, _curves({name: numbers[name] for name in names}))
+
+
+def _numbers(path: Path) -> dict[str, FloatArray]:
+    """Columns of the history; NaN where there is none."""
+    rows = np.array([[np.nan if one is None else one for one in row] for row in path.history.rows(path.steps)])
+    return dict(zip(path.history.columns, rows.T, strict=True))
+
+
+def _scale(path: Path, unit: str) -> float:
+    """Largest sum of magnitudes of forces (N) or moments (N m) on the path; 0 for other units."""
+    balances = [balance for step in path.steps if (balance := step.balance) is not None]
+    field = {"N": "force_scale", "N m": "moment_scale"}.get(unit)
+    return max((getattr(balance, field) for balance in balances), default=0.0) if field else 0.0
+
+
+def _curves(columns: dict[str, FloatArray]) -> list[Curve]:
+    """A colour for each name, or for each curve where there is one name; a line for each component."""
+    parts = {name: _parts(name) for name in columns}
+    owners = list(dict.fromkeys(owner for owner, _, _ in parts.values()))
+    found = []
+    for number, (name, values) in enumerate(columns.items()):
+        owner, symbol, component = parts[name]
+        line, marker = COMPONENTS[(component or 3) - 1]
+        colour = COLOURS[(number if len(owners) == 1 else owners.index(owner)) % len(COLOURS)]
+        style = {"color": colour, "linestyle": line, "marker": marker, "linewidth": 2.0}
+        found.append(Curve(owner, symbol, component, values, style))
+    return found
+
+
+def _parts(column: str) -> tuple[str, str, int | None]:
+    """Owner, symbol and component of a column such as `tip.R3`, `torque2` or `elastic`."""
+    owner, _, rest = column.rpartition(".")
+    numbered = _NUMBERED.fullmatch(rest)
+    return (owner, numbered[1], int(numbered[2])) if numbered else (owner, rest, None)
+
+
+def _literal(name: str) -> str:
+    """A user's name, safe from being read as mathematics."""
+    return name.replace("$", r"\$")

@@ -1,0 +1,88 @@
+"""The history of a path: its numbers step by step, each step evaluated once, work summed from step to step."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+from magshell.equations.discretisation import Discretisation
+from magshell.evaluation.converged import Converged, Reached, converged
+from magshell.evaluation.series import Number, columns, evaluated
+from magshell.evaluation.work import Work, no_work
+from magshell.solver.critical import CriticalPoint
+from magshell.solver.step import Step
+
+ABOUT = ("stage", "arc_length", "negative_pivots")
+
+
+class History:
+    """The rows of `history.csv`.
+
+    Parameters
+    ----------
+    discretisation : Discretisation
+    critical_points : sequence of CriticalPoint
+        Of the path, which may grow.
+    """
+
+    def __init__(self, discretisation: Discretisation, critical_points: Sequence[CriticalPoint] = ()) -> None:
+        self._discretisation, self._critical_points = discretisation, critical_points
+        self._steps: list[Step] = []
+        self._rows: list[list[Number]] = []
+        self._work: list[Work] = []
+        self._last: Converged | None = None
+
+    @property
+    def columns(self) -> list[str]:
+        """Names: field, probes, what only the path knows, and then the columns of all series."""
+        model = self._discretisation.model
+        probes = [f"{name}.u{i}" for name in model.probe_nodes for i in (1, 2, 3)]
+        return ["load_factor", "B1", "B2", "B3", *probes, *ABOUT, *columns(model)]
+
+    def row(self, step: Step) -> list[Number]:
+        """Numbers of a step, in the order of the columns; None where there is none.
+
+        Steps are asked for in their order; what was asked for before is kept.
+        """
+        if step.number >= len(self._rows):
+            self._steps.append(step)
+            self._rows.append(self._evaluated(step))
+        return self._rows[step.number]
+
+    def rows(self, steps: Sequence[Step]) -> list[list[Number]]:
+        """Of all steps of the path, from the first."""
+        return [self.row(step) for step in steps]
+
+    def _evaluated(self, step: Step) -> list[Number]:
+        reached = converged(self._discretisation, step)
+        before, work = self._before(step)
+        reached.work = work if before is None else work.plus(reached.work_from(before))
+        self._work.append(reached.work)
+        self._last = reached
+        u = [step.state.u[node].tolist() for node in self._discretisation.model.probe_nodes.values()]
+        of_path = [step.stage + 1, float(step.arc_length), step.negative_pivots]
+        head = [float(step.load_factor), *map(float, step.flux_density), *(number for one in u for number in one)]
+        return [*head, *of_path, *evaluated(reached)]
+
+    def _before(self, step: Step) -> tuple[Converged | None, Work]:
+        """The state on the path before a step, and the work up to there."""
+        if self._last is None:
+            return None, no_work(self._discretisation)
+        last = self._steps[-2]
+        stage = self._discretisation.model.stages[step.stage]
+        if step.stage == last.stage or stage.branch is None:
+            return self._last, self._work[-1]
+        return self._at(self._critical_points[stage.branch - 1])
+
+    def _at(self, point: CriticalPoint) -> tuple[Converged, Work]:
+        """A critical point, where a branch starts, and the work on the way to it."""
+        number = next(
+            one.number
+            for one, after in pairwise(self._steps)
+            if after.stage == point.stage and one.arc_length <= point.arc_length <= after.arc_length
+        )
+        there = self._converged(point)
+        return there, self._work[number].plus(there.work_from(self._converged(self._steps[number])))
+
+    def _converged(self, reached: Reached) -> Converged:
+        return converged(self._discretisation, reached)
