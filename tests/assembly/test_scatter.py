@@ -17,7 +17,7 @@ from battery import (
     random_state,
     scaled_error,
 )
-from parts import PARTS, jointed, layered
+from parts import PARTS, jointed
 from shell import oracle
 
 from magshell.equations.instant import Instant

@@ -219,8 +219,8 @@ def eliminated(values, coupling, point, extra=None):
     ζ = stretches(values, coupling, point) if point.section.by_level else np.zeros(0)
     at = jets.variables(np.concatenate([x, ζ]))
     f = of_flat(at[: len(x)], values)
-    if len(ζ):
-        f["zeta"] = at[len(x) :]
+    if len(ζ):  # in place of φ
+        f["zeta"], f["phi"] = at[len(x) :], 0.0 * f["phi"]
     energy, (g, H) = strain_energy(f, point), magnetic_work(coupling, f, point)
     H, geometric = H + energy.hessian, g + energy.gradient
     if extra is not None:

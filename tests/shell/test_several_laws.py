@@ -52,7 +52,7 @@ def evaluated(d, make, state, elements=slice(None)):
 def surface_of(d, elements=slice(None)):
     """The mid-surface of some elements of a body without regions."""
     nodes, shell = d.mesh.elements[elements], d.model.shell
-    stretched = np.zeros(len(nodes), dtype=bool)
+    stretched = np.zeros(nodes.shape, dtype=bool)
     return Surface(nodes, stretched, d.mesh.points[nodes], d.normals[nodes], shell.element, shell.micro_rotation)
 
 
