@@ -132,7 +132,7 @@ class ShellTerm:
     def predict(self, instant: Instant, increment: Increment) -> Prediction:
         """See `Term`."""
         shape = self.body.levels.shape
-        stresses = loops.Stresses(np.empty((*shape, 3, 3)), np.empty((*shape[:2], 2, 3)))
+        stresses = loops.Stresses(np.zeros((*shape, 3, 3)), np.zeros((*shape[:2], 2, 3)))
         loops.predict_stresses(
             self.body, instant.state, instant.loading.flux_density, increment.nodal, increment.alpha, stresses
         )
