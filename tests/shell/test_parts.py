@@ -8,9 +8,12 @@ from battery import (
     COUPLINGS,
     FIELD,
     PATCHES,
+    SINGLES,
     TRIANGULAR,
     TYPES,
     dense,
+    each_material,
+    free_body,
     name_of,
     places,
     random_increment,
@@ -24,6 +27,7 @@ from magshell import magnetics
 from magshell.equations.instant import Increment, Instant
 from magshell.shell.elements import QUADRATIC
 from shell import oracle
+from shell.test_element import reference as oracle_of_one
 from shell.test_objectivity import rotation_of, superposed, turned_matrix, turned_rows
 from shell.test_zero_modes import spectrum
 
@@ -57,7 +61,14 @@ def test_three_sections_meet_at_the_middle():
 @each_body
 @each_coupling
 def test_predicted_stresses_are_the_derivative_of_the_stresses(parts, element, coupling):
-    d = body(parts, element, coupling=coupling)
+    check_predicted_stresses(body(parts, element, coupling=coupling))
+
+
+def test_predicted_stresses_of_a_nonlinear_coupling(nonlinear):
+    check_predicted_stresses(body(layered, coupling=nonlinear))
+
+
+def check_predicted_stresses(d):
     state, increment = random_state(d, 6), random_increment(d, 6)
     own, predicted = d.predicted(at(d, state)), d.predicted(at(d, state), increment)
     for e in (0, len(d.mesh.elements) // 2, len(d.mesh.elements) - 1):
@@ -73,8 +84,12 @@ def test_predicted_stresses_are_the_derivative_of_the_stresses(parts, element, c
         assert max(errors.values()) < 1e-11, f"element {e}: {errors}"
 
 
-def test_predicted_stresses_of_a_nonlinear_coupling(nonlinear):
-    test_predicted_stresses_are_the_derivative_of_the_stresses.__wrapped__(layered, QUADRATIC, nonlinear)
+def test_levels_that_an_element_has_not_have_no_stress():
+    """Predictions are combined in sums: whatever stands in the arrays must be a number."""
+    d = body(layered)
+    used = np.arange(d.reference.body.levels.shape[2]) < d.reference.body.points["levels"][..., None]
+    assert not used.all()
+    assert not d.predicted(at(d, random_state(d, 6))).S[~used].any()
 
 
 @each_body
@@ -101,6 +116,23 @@ def test_mixed_tangent_with_other_stresses_is_symmetric_and_keeps_the_residual(p
     K_mixed = dense(d, mixed.matrix)
     assert scaled_error(K_mixed, K_mixed.T) < 1e-12
     assert scaled_error(K_mixed, K) > 1e-3
+
+
+@each_material
+def test_mixed_tangent_of_levels_is_that_of_an_energy_with_the_given_stresses(material):
+    """Of W + ½ (S' - S) : UᵀU + mu l² (κ' - κ) · κ with fixed S', κ', and ζ eliminated.
+
+    S being symmetric (η = 0); that of layers is not, whose transverse shear is warped.
+    """
+    material = material._replace(coupling_modulus=0.0)
+    for coupling in CONSERVATIVE:
+        d = free_body(SINGLES["curved"](), material, coupling, stretch="plane-stress", levels=3)
+        state = random_state(d, 1)
+        own, given = d.predicted(at(d, state)), d.predicted(at(d, random_state(d, 11)))
+        K = dense(d, d.assemble(at(d, state, given)).matrix)
+        _, r, K_whole = oracle_of_one(d, state, ((given.S - own.S)[0], (given.kappa - own.kappa)[0]))
+        error = scaled_error(K, oracle.condensed(d, r, K_whole)[1])
+        assert error < 1e-11, f"{error:.1e}"
 
 
 # -- derivatives by steps along `moved` ------------------------------------------------------------------------------
@@ -132,10 +164,10 @@ def test_residual_is_the_derivative_of_the_energy(parts, element, coupling):
 @each_body
 @each_coupling
 def test_tangent_is_the_derivative_of_the_residual(parts, element, coupling):
-    """α follows as the condensed tangent has it; the residual moves along spins of the chart, which it is turned to."""
+    """After condensation: α follows the nodal values. (Rotations: `test_scatter`, in the chart of the elements.)"""
     d = body(parts, element, coupling=coupling)
     state, increment = random_state(d, 8), random_increment(d, 8).nodal
-    increment[:, 7:10] = 0.0  # rotations: test_scatter, in their chart
+    increment[:, 7:10] = 0.0
     K = dense(d, d.assemble(at(d, state)).matrix)
     along = d.shell.recovered(increment, whole=False)
 
@@ -145,7 +177,6 @@ def test_tangent_is_the_derivative_of_the_residual(parts, element, coupling):
 
     rows = np.setdiff1d(np.arange(d.free.size), np.flatnonzero(np.tile(np.isin(np.arange(11), (7, 8, 9)), len(d.free))))
     expected = slope(condensed)[rows]
-    # without an increment of α the residual itself has the tangent before condensation; with it, that after
     error = scaled_error((K @ increment.ravel())[rows], expected)
     assert error < 1e-9, f"{error:.1e}"
 

@@ -6,6 +6,7 @@ order before the first iteration, second after it and fourth after two, if the t
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -35,10 +36,25 @@ class Case(NamedTuple):
     coupling: type
     element: str = "quadratic"
     stretch: str = "linear"
+    parts: bool = False
 
     @property
     def model(self) -> ms.Model:
-        return arm(coupling=self.coupling(), element=self.element, stretch=self.stretch)
+        model = arm(coupling=self.coupling(), element=self.element, stretch=self.stretch)
+        return in_parts(model) if self.parts else model
+
+    def __str__(self) -> str:
+        return f"{self.element}-{self.coupling.__name__}" + self.parts * "-parts"
+
+
+def in_parts(model: ms.Model) -> ms.Model:
+    """A third thicker and flush, a third of two layers of which one is stiff and one magnetised."""
+    shell = model.shell
+    _, second, third = np.array_split(np.arange(len(shell.mesh.elements)), 3)
+    stiff = ms.MicropolarMooneyRivlin(400e3, 2e6, 40e3, 9e-5)
+    layers = [ms.Layer(0.2e-3, stiff), ms.Layer(0.5e-3, shell.material, shell.remanence)]
+    regions = [ms.Region(second, 1.1e-3, offset=0.1e-3), ms.Region(third, layers=layers)]
+    return replace(model, shell=replace(shell, regions=regions))
 
 
 CASES = [*(Case(law) for law in laws()), *(Case(laws()[0], element) for element in ELEMENTS if element != "quadratic")]
@@ -77,7 +93,7 @@ def errors(case: Case, mixed: bool, ε: float) -> np.ndarray:
     return np.array([np.linalg.norm(state.u - solution.u) for state in iterates[:3]])
 
 
-@pytest.mark.parametrize("case", CASES, ids=[f"{case.element}-{case.coupling.__name__}" for case in CASES])
+@pytest.mark.parametrize("case", CASES, ids=map(str, CASES))
 def test_mixed_tangent_has_orders_1_2_4(case: Case) -> None:
     sizes = [0.01, 0.005, 0.0025]
     found = [errors(case, True, size) for size in sizes]
@@ -85,6 +101,17 @@ def test_mixed_tangent_has_orders_1_2_4(case: Case) -> None:
         orders = np.log2(large / small)
         # the next term of each expansion is smaller by a factor of the relative size of the increment
         assert orders == pytest.approx([1, 2, 4], abs=2 * ε), f"ε = {ε}: {orders}, errors {small}"
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("mixed", [True, False], ids=["mixed", "plain"])
+@pytest.mark.parametrize("case", [Case(law, parts=True) for law in laws()], ids=str)
+def test_orders_with_layers_and_jumps(case: Case, mixed: bool) -> None:
+    """Fourth order shows for smaller increments: the parts are thin, and of different stiffness."""
+    large, small = (errors(case, mixed, ε) for ε in (0.0025, 0.00125))
+    orders = np.log2(large / small)
+    assert orders == pytest.approx([1, 2, 4], abs=0.15), f"{orders}, errors {small}"
+    assert orders[:2] == pytest.approx([1, 2], abs=0.005), f"{orders}, errors {small}"
 
 
 @pytest.mark.parametrize("stretch", ["linear", "none", "plane-stress"])
