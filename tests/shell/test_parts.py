@@ -181,6 +181,23 @@ def test_tangent_is_the_derivative_of_the_residual(parts, element, coupling):
     assert error < 1e-9, f"{error:.1e}"
 
 
+@each_body
+@each_coupling
+def test_load_rate_is_the_derivative_along_the_field(parts, element, coupling):
+    """Stretches of levels follow the field where it pulls across them."""
+    d = body(parts, element, coupling=coupling)
+    state, loading = random_state(d, 6), d.model.loading(1.0)
+    rate = loading._replace(flux_density=np.array([0.3, 0.5, -0.2]))
+
+    def residual(size):
+        there = loading._replace(flux_density=loading.flux_density + size * rate.flux_density)
+        return d.assemble(Instant(state, there), tangent=False).residual
+
+    found = d.rows.folded(d.shell.load_rate(at(d, state), rate))
+    error = scaled_error(found.ravel(), slope(residual, 0.1).ravel())
+    assert error < 1e-8, f"{error:.1e}"
+
+
 # -- motions ---------------------------------------------------------------------------------------------------------
 
 
