@@ -6,7 +6,6 @@ order before the first iteration, second after it and fourth after two, if the t
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -24,7 +23,7 @@ from magshell.shell.elements import ELEMENTS
 from magshell.shell.state import State
 from magshell.solver.constraints import Constraint, Metric, ProbeValue, Sphere
 from magshell.solver.newton import System, Trial, newton
-from solver.models import arm, central_difference, equation_numbers, strip
+from solver.models import arm, central_difference, equation_numbers, in_parts, strip
 
 BEGIN = 0.2
 SHARP = 1e-13
@@ -45,16 +44,6 @@ class Case(NamedTuple):
 
     def __str__(self) -> str:
         return f"{self.element}-{self.coupling.__name__}" + self.parts * "-parts"
-
-
-def in_parts(model: ms.Model) -> ms.Model:
-    """A third thicker and flush, a third of two layers of which one is stiff and one magnetised."""
-    shell = model.shell
-    _, second, third = np.array_split(np.arange(len(shell.mesh.elements)), 3)
-    stiff = ms.MicropolarMooneyRivlin(400e3, 2e6, 40e3, 9e-5)
-    layers = [ms.Layer(0.2e-3, stiff), ms.Layer(0.5e-3, shell.material, shell.remanence)]
-    regions = [ms.Region(second, 1.1e-3, offset=0.1e-3), ms.Region(third, layers=layers)]
-    return replace(model, shell=replace(shell, regions=regions))
 
 
 CASES = [*(Case(law) for law in laws()), *(Case(laws()[0], element) for element in ELEMENTS if element != "quadratic")]
