@@ -361,6 +361,6 @@ def chosen(names: Sequence[str]) -> list[Output]:
             families.setdefault(word, set()).add(output.name)
     for name in names:
         if name not in families:
-            raise InputError(f"outputs: there is no output '{name}'. {suggest(name, families)}")
+            raise InputError(f"There is no output '{name}'. {suggest(name, families)}")
     asked = {member for name in names for member in families[name]}
     return [output for output in OUTPUTS.values() if output.usual or output.name in asked]
