@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from battery import TRIANGULAR, TYPES, bowl, each_element, for_element, free_body, homogeneous, patch
@@ -15,25 +13,10 @@ from magshell.evaluation.extrapolation import to_nodes
 from magshell.evaluation.patches import patches_of
 from magshell.evaluation.recovery import local_axes, recovery_of
 from magshell.mesh import Mesh, split
-from magshell.model.shell import Region
 from magshell.shell.elements import QUADRATIC
 
 RUBBER = ms.MicropolarNeoHookean(1.0, 1.7, 0.3, 0.2)
 OTHER = ms.MicropolarStVenantKirchhoff(1.0, 1.7, 0.3, 0.2)
-
-
-class Several(ms.Shell):
-    """A shell whose elements from `first` on are a region of their own, of another thickness or material."""
-
-    first, second_thickness, second_material = 0, 0.1, RUBBER
-
-    @property
-    def regions(self):
-        elements = np.arange(len(self.mesh.elements))
-        return (
-            Region(elements[: self.first], self.thickness, self.material),
-            Region(elements[self.first :], self.second_thickness, self.second_material),
-        )
 
 
 def shell_of(mesh, **changes):
@@ -62,16 +45,25 @@ def test_a_smooth_shell_of_one_make_has_a_row_for_each_node(triangles):
     np.testing.assert_allclose(found.mean.sum(axis=1), 1.0, rtol=1e-14)
 
 
+def with_region(**changes):
+    """Two by four elements, the second half of them a region."""
+    mesh = patch((2, 4))
+    mesh = Mesh(mesh.points, mesh.elements, {"second": np.arange(4, 8)})
+    return mesh, shell_of(mesh, regions=[ms.Region("second", **{"thickness": 0.1, "material": RUBBER} | changes)])
+
+
 @pytest.mark.parametrize(
     "change",
-    [{"second_thickness": 0.2}, {"second_material": OTHER}, {"second_material": RUBBER._replace(shear_modulus=2.0)}],
-    ids=["thickness", "law", "modulus"],
+    [
+        {"thickness": 0.2},
+        {"material": OTHER},
+        {"material": RUBBER._replace(shear_modulus=2.0)},
+        {"thickness": None, "material": None, "layers": [ms.Layer(0.05, RUBBER), ms.Layer(0.05, OTHER)]},
+    ],
+    ids=["thickness", "law", "modulus", "layers"],
 )
 def test_a_change_of_make_is_a_border(change):
-    mesh = patch((2, 4))
-    shell = Several(mesh, 0.1, RUBBER)
-    for name, value in ({"first": 4, "second_thickness": 0.1, "second_material": RUBBER} | change).items():
-        object.__setattr__(shell, name, value)
+    mesh, shell = with_region(**change)
     found = patches_of(shell)
     assert borders(found, mesh) == set(np.intersect1d(mesh.elements[:4], mesh.elements[4:]).tolist())
     assert len(np.intersect1d(found.elements[:4], found.elements[4:])) == 0
@@ -80,10 +72,7 @@ def test_a_change_of_make_is_a_border(change):
 
 
 def test_regions_of_equal_data_have_no_border():
-    mesh = patch((2, 4))
-    shell = Several(mesh, 0.1, RUBBER)
-    object.__setattr__(shell, "first", 4)
-    object.__setattr__(shell, "second_thickness", 0.1)
+    mesh, shell = with_region()
     assert not borders(patches_of(shell), mesh)
 
 

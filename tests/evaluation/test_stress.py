@@ -20,13 +20,13 @@ from scipy.spatial.transform import Rotation
 
 import magshell as ms
 from magshell.evaluation.converged import Converged
-from magshell.evaluation.maxima import FACES, columns, maxima, numbers
+from magshell.evaluation.maxima import FACES, described, maxima
 from magshell.evaluation.outputs import OUTPUTS
+from magshell.evaluation.series import SERIES
 from magshell.evaluation.strain import axial, von_mises
 from magshell.materials.law import evaluate
 from magshell.shell.point import INTERNAL
 from magshell.shell.rotation import product
-from magshell.shell.state import State
 
 IN_AXES = [output for output in OUTPUTS.values() if output.where == "patch" and not output.name.startswith("local_axis")]
 
@@ -110,12 +110,11 @@ def test_a_rigid_rotation_changes_nothing(element):
     state = random_state(d, 4, turn=[0.3, 0.2, -0.1])
     R = Rotation.from_rotvec([0.9, -1.3, 0.7])
     matrix, q = R.as_matrix(), R.as_quat(scalar_first=True)
-    turned = State(
-        (d.mesh.points + state.u) @ matrix.T - d.mesh.points,
-        (d.normals + state.w) @ matrix.T - d.normals,
-        state.phi,
-        product(np.broadcast_to(q, state.q.shape), state.q),
-        state.alpha @ matrix.T,
+    turned = state._replace(
+        u=(d.mesh.points + state.u) @ matrix.T - d.mesh.points,
+        w=(d.normals + state.w) @ matrix.T - d.normals,
+        q=product(np.broadcast_to(q, state.q.shape), state.q),
+        alpha=state.alpha @ matrix.T,
     )
     loading = d.model.loading(1.0)
     B = loading.flux_density
@@ -173,7 +172,12 @@ def test_maxima_are_those_of_the_outputs():
         assert values[largest.face][largest.node] == largest.value
         assert largest.node in d.mesh.elements[largest.element]
         np.testing.assert_array_equal(largest.position, d.mesh.points[largest.node])
-    row = dict(zip(columns(), numbers(reached), strict=True))
-    assert row["von_mises.max"] == found["von_mises"].value
-    assert row["principal_strain.node"] == found["principal_strain"].node
-    assert row["principal_stress.face"] == FACES[found["principal_stress"].face]
+    row = {}
+    for series in (SERIES[name] for name in ("largest stress", "largest strain", "places of the largest")):
+        row |= dict(zip(series.columns(d.model), series.evaluate(reached), strict=True))
+    told = described(row, d.mesh.points)
+    for name, largest in found.items():
+        assert row[f"max_{name}"] == told[name]["value"] == largest.value
+        assert row[f"max_{name}.face"] == FACES[largest.face]
+        assert tuple(told[name].values())[1:4] == (largest.face, largest.node, largest.element)
+        assert told[name]["position"] == largest.position.tolist()

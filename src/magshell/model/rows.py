@@ -108,7 +108,7 @@ def _sections(shell: Shell) -> tuple[IntArray, FloatArray]:
     kind, measures = np.zeros((count, rest), dtype=np.int64), np.zeros((count, rest, most + 1))
     known: dict[_Section, int] = {}
     for part in shell.parts:
-        section = _Section(part.layered, tuple(layer.material for layer in part.layers))
+        section = _Section(part.layered, tuple((type(one.material), one.material) for one in part.layers))
         kind[part.elements] = known.setdefault(section, len(known))
         measures[part.elements, :, : len(part.layers)] = part.at_nodes[:, :rest]
         measures[part.elements, :, most] = part.offset_at_nodes[:, :rest]

@@ -14,6 +14,7 @@ from magshell.drawing import drawing
 from magshell.equations.discretisation import Discretisation
 from magshell.errors import InputError, suggest
 from magshell.evaluation.balance import largest_imbalances
+from magshell.evaluation.maxima import described
 from magshell.model.course import Course, Loading
 from magshell.model.model import Model
 from magshell.solver.critical import CriticalPoint
@@ -184,7 +185,7 @@ class Path:
         }
 
     def _reached(self, last: Step) -> dict[str, Any]:
-        """Reactions, energies, work and torque at the last step, for the summary."""
+        """Reactions, energies, work, torque and the largest stresses at the last step, for the summary."""
         self.history.rows(self.steps)
         numbers = dict(zip(self.history.columns, self.history.row(last), strict=True))
         kinds = {"force": "R", "moment": "M"}
@@ -197,6 +198,7 @@ class Path:
             },
             **{name: numbers[name] for name in ("elastic", "magnetic", "work", "work_field")},
             "magnetic_torque": [numbers[f"torque{i}"] for i in (1, 2, 3)],
+            "largest": described(numbers, self.model.shell.mesh.points),
         }
 
     def save(self, file: str | PathLike[str]) -> None:
