@@ -217,8 +217,8 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
         {
             "local_axis": "Its projection on the undeformed surface is the first local axis of tensors and resultants, "
             "see [Strain and stress](stress.md#axes).",
-            "outputs": "Names of [outputs](pictures.md#what-can-be-shown) that `steps/*.vtu` and the page hold beside the usual ones; "
-            "`stress` stands for `stress_top`, `stress_middle` and `stress_bottom`.",
+            "outputs": "Names of [outputs](pictures.md#what-can-be-shown) that `steps/*.vtu` and the page hold beside "
+            "the usual ones; `stress` stands for `stress_top`, `stress_middle` and `stress_bottom`.",
         },
     ),
     "solver": (

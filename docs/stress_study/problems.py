@@ -90,7 +90,7 @@ def membrane(count: int) -> list[Value]:
 
 
 def edge_traction(mesh: Mesh, edges: Any, tension: float) -> np.ndarray:
-    """Forces (nodes, 3) of a tension (N/m) normal to edges (k, 3) of a mesh in the plane X3 = 0, from the middle out."""
+    """Forces (nodes, 3) of a tension (N/m) normal to edges (k, 3) of a mesh in the plane X3 = 0, outward."""
     parent, weights = np.polynomial.legendre.leggauss(4)
     N = np.stack([parent * (parent - 1) / 2, parent * (parent + 1) / 2, 1 - parent**2], axis=1)
     dN = np.stack([parent - 0.5, parent + 0.5, -2 * parent], axis=1)

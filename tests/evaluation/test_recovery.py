@@ -1,4 +1,4 @@
-"""Values at the nodes: exact where they are constant or linear, of second order elsewhere, never mixed across borders."""
+"""Values at the nodes: exact where constant or linear, of second order elsewhere, never mixed across borders."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def test_a_jump_of_the_remanence_is_a_border_and_a_smooth_change_is_none():
 
 def test_elements_that_meet_in_a_corner_only_are_apart():
     one, other = patch((1, 1)), patch((1, 1))
-    points = np.vstack([one.points, other.points + [1, 1, 0]])
+    points = np.vstack([one.points, other.points + np.array([1, 1, 0])])
     shared = np.flatnonzero(np.abs(points - [1, 1, 0]).sum(axis=1) < 1e-12)
     number = np.arange(len(points))
     number[shared[1]] = shared[0]
@@ -114,7 +114,7 @@ def test_elements_that_meet_in_a_corner_only_are_apart():
     assert borders(patches_of(shell_of(mesh)), mesh) == {int(rows[shared[0]])}
 
 
-# -- extrapolation -------------------------------------------------------------------------------------------------------
+# -- extrapolation -----------------------------------------------------------------------------------------------------
 
 
 @each_element
@@ -147,7 +147,7 @@ def test_shear_is_laid_through_the_means(name):
     np.testing.assert_allclose(found, d.mesh.points @ field.T + [0.7, -0.1, 0.0], atol=1e-12)
 
 
-# -- axes ------------------------------------------------------------------------------------------------------------------
+# -- axes --------------------------------------------------------------------------------------------------------------
 
 
 def test_local_axes_are_the_projection_of_the_direction():
@@ -164,7 +164,7 @@ def test_local_axes_are_the_projection_of_the_direction():
 @pytest.mark.parametrize("wrong", [(0, 0, 0), (1, 0), (np.nan, 0, 0)])
 def test_a_direction_that_is_none_is_refused(wrong):
     strip = ms.mesh.rectangle(1.0, 0.2, (2, 1))
-    with pytest.raises(ms.InputError, match="local_axis is .* three finite numbers, not all zero"):
+    with pytest.raises(ms.InputError, match=r"local_axis is .* three finite numbers, not all zero"):
         ms.Model(shell_of(strip), [ms.Clamp("left")], loads=[ms.Force("right", (0, 0, 1))], local_axis=wrong)
 
 
@@ -190,7 +190,7 @@ def test_a_homogeneous_deformation_is_the_same_at_every_node(element, surface):
         assert error < (0.02 if surface else 1e-12), error
 
 
-# -- order -----------------------------------------------------------------------------------------------------------------
+# -- order -------------------------------------------------------------------------------------------------------------
 
 
 def lame(count, element=QUADRATIC, distortion=0.0):

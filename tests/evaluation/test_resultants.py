@@ -111,8 +111,8 @@ COUPLINGS = [ms.MicropolarCouple(), ms.MicroRotationEnergy(), ms.DeformationGrad
 def test_sections_of_a_magnetic_strip_are_in_equilibrium(coupling):
     """A cantilever that turns far in a field, with a force at its end: every section carries what acts beyond it.
 
-    The field exerts no force; its torque is integrated over the volume beyond the section. (Next to the clamp the forces
-    vary across the width more than three nodes can show.)
+    The field exerts no force; its torque is integrated over the volume beyond the section. (Next to the clamp the
+    forces vary across the width more than three nodes can show.)
     """
     force = np.array([0.0, 0.0, -1.5e-5])
     shell = strip((16, 1), remanence=ms.remanence.constant((0.08, 0.0, 0.02)))

@@ -28,7 +28,9 @@ from magshell.materials.law import evaluate
 from magshell.shell.point import INTERNAL
 from magshell.shell.rotation import product
 
-IN_AXES = [output for output in OUTPUTS.values() if output.where == "patch" and not output.name.startswith("local_axis")]
+IN_AXES = [
+    output for output in OUTPUTS.values() if output.where == "patch" and not output.name.startswith("local_axis")
+]
 
 
 def cauchy_of_energy(material, F, R, step=1e-6):
@@ -45,7 +47,7 @@ def cauchy_of_energy(material, F, R, step=1e-6):
 
 @each_material
 def test_stress_is_the_derivative_of_the_energy(material):
-    """Under a homogeneous deformation, with a micro-rotation of its own; axes turned by the polar rotation of the surface."""
+    """Under a homogeneous deformation, with a micro-rotation of its own; axes turned by the surface's rotation."""
     d = free_body(patch((2, 2), distortion=0.2), material)
     rng = np.random.default_rng(3)
     F = Rotation.from_rotvec([0.4, 1.1, -0.7]).as_matrix() @ (np.eye(3) + 0.2 * rng.uniform(-1, 1, (3, 3)))
@@ -67,13 +69,17 @@ def test_stress_is_the_derivative_of_the_energy(material):
         vector = reached.at_face("axial_stress", face)[0]
         np.testing.assert_allclose(np.cross(vector, np.eye(3)).T, 0.5 * (expected - expected.T), atol=1e-8 * scale)
     for i in (0, 1):
-        np.testing.assert_allclose(reached.resultant("axes")[:, i], np.tile(axes[:, i], (len(d.mesh.points), 1)), atol=1e-12)
+        np.testing.assert_allclose(
+            reached.resultant("axes")[:, i], np.tile(axes[:, i], (len(d.mesh.points), 1)), atol=1e-12
+        )
 
 
 def test_von_mises_of_simple_states():
     tension, shear = np.diag([7.0, 0.0, 0.0]), np.zeros((3, 3))
     shear[0, 1] = shear[1, 0] = 2.0
-    np.testing.assert_allclose(von_mises(np.stack([tension, shear, 5.0 * np.eye(3)])), [7.0, 2.0 * 3**0.5, 0.0], atol=1e-14)
+    np.testing.assert_allclose(
+        von_mises(np.stack([tension, shear, 5.0 * np.eye(3)])), [7.0, 2.0 * 3**0.5, 0.0], atol=1e-14
+    )
     np.testing.assert_allclose(axial(np.cross([1.0, 2.0, 3.0], np.eye(3)).T[None])[0], [1.0, 2.0, 3.0])
 
 
@@ -167,7 +173,9 @@ def test_maxima_are_those_of_the_outputs():
     reached = Converged(d, random_state(d, 4), d.model.loading(1.0))
     found = maxima(reached)
     for name, largest in found.items():
-        values = {face: OUTPUTS[f"{name}_{face}"].evaluate(reached).reshape(len(d.mesh.points), -1)[:, 0] for face in FACES}
+        values = {
+            face: OUTPUTS[f"{name}_{face}"].evaluate(reached).reshape(len(d.mesh.points), -1)[:, 0] for face in FACES
+        }
         assert largest.value == max(one.max() for one in values.values())
         assert values[largest.face][largest.node] == largest.value
         assert largest.node in d.mesh.elements[largest.element]

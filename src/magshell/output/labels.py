@@ -9,13 +9,13 @@ _SHOWN_UNITS = {
     "J/m³": ("kJ/m³", 1e-3), "N/m²": ("kN/m²", 1e-3), "N": ("mN", 1e3), "N m": ("mN mm", 1e6),
 }  # fmt: skip
 _TEX = {
-    "h": "h/h_0", "phi": r"\varphi", "theta": r"\vartheta", "s": r"\sigma", "s_vm": r"\sigma_\mathrm{vM}", "s_p": r"\sigma",
-    "s_a": r"\sigma^\mathrm{axial}", "e": r"\varepsilon", "e_max": r"\varepsilon_\mathrm{max}", "lambda": r"\lambda",
-    "tau": r"\tau",
+    "h": "h/h_0", "phi": r"\varphi", "theta": r"\vartheta", "tau": r"\tau", "lambda": r"\lambda", "e": r"\varepsilon",
+    "e_max": r"\varepsilon_\mathrm{max}", "s": r"\sigma", "s_p": r"\sigma", "s_vm": r"\sigma_\mathrm{vM}",
+    "s_a": r"\sigma^\mathrm{axial}", "t_1": "t_1", "t_2": "t_2",
 }  # fmt: skip
 _PLAIN = {
-    "h": "h/h₀", "phi": "φ", "theta": "ϑ", "s": "σ", "s_vm": "σᵥₘ", "s_p": "σ", "s_a": "σ axial ", "e": "ε", "e_max": "ε max",
-    "lambda": "λ", "tau": "τ", "t_1": "t₁", "t_2": "t₂",
+    "h": "h/h₀", "phi": "φ", "theta": "ϑ", "tau": "τ", "lambda": "λ", "e": "ε", "e_max": "ε max", "s": "σ", "s_p": "σ",
+    "s_vm": "σ v. Mises", "s_a": "σ axial ", "t_1": "t₁,", "t_2": "t₂,",
 }  # fmt: skip
 _SUBSCRIPTS = str.maketrans("123", "₁₂₃")
 
@@ -56,4 +56,5 @@ def _letter(output: Output) -> str:
 def bar_title(output: Output, component: int | None) -> str:
     """What stands over a colour bar: letter and unit, as mathematics."""
     unit, _ = shown_unit(output)
-    return tex(output, component) + (f" ({unit})" if unit else "")
+    between = "\n" if output.face else " "
+    return tex(output, component) + (f"{between}({unit})" if unit else "")
