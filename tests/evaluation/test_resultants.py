@@ -7,6 +7,7 @@ import pytest
 
 import magshell as ms
 from magshell.evaluation.converged import Converged, converged
+from magshell.evaluation.patches import patches_of
 from magshell.evaluation.points import magnetic_torque, of_couplings
 
 LENGTH, WIDTH, THICKNESS = 20e-3, 4e-3, 0.8e-3
@@ -133,3 +134,57 @@ def test_sections_of_a_magnetic_strip_are_in_equilibrium(coupling):
         assert np.linalg.norm(section_force - force) < 6e-3 * np.linalg.norm(force), x
         expected = np.cross(tip, force) + of_elements[middles > x].sum(axis=0)
         assert np.linalg.norm(section_moment - expected) < 2e-3 * scale, x
+
+
+def bent(shell, total):
+    """A strip with held sides (plane strain), clamped to turn freely in thickness, under a moment at its end."""
+    planes = [ms.SymmetryPlane(side, (0, 1, 0)) for side in ("bottom", "top")]
+    supports = [*planes, ms.SymmetryPlane("left", (1, 0, 0)), ms.Prescribe("left", "u", 3)]
+    return end_of(ms.Model(shell, supports, loads=[ms.Moment("right", (0.0, total, 0.0))]))
+
+
+def test_stress_on_both_sides_of_a_step():
+    """Twice as thick beyond the middle: the moment goes through, the stress at the face falls to a quarter."""
+    total = 1e-9
+    mesh = ms.mesh.rectangle(LENGTH, WIDTH, (20, 1))
+    middles = mesh.points[mesh.elements].mean(axis=1)[:, 0]
+    mesh = ms.mesh.Mesh(mesh.points, mesh.elements, {"thick": np.flatnonzero(middles > 0.5 * LENGTH)}, mesh.edge_groups)
+    material = RUBBER._replace(length_scale=1e-3 * THICKNESS)
+    thick = ms.Region("thick", thickness=2.0 * THICKNESS, material=material)
+    reached = bent(ms.Shell(mesh, THICKNESS, material, regions=[thick]), total)
+    patches = patches_of(reached.discretisation.model.shell)
+    rows = np.flatnonzero(np.abs(mesh.points[patches.nodes, 0] - 0.5 * LENGTH) < 1e-9)
+    heavy = np.isin(patches.first[rows], mesh.element_groups["thick"])
+    assert heavy.sum() == 3
+    assert (~heavy).sum() == 3
+    np.testing.assert_allclose(reached.resultant("moments")[rows, 0, 0], total / WIDTH, rtol=2e-2)
+    for thickness, side in ((THICKNESS, rows[~heavy]), (2.0 * THICKNESS, rows[heavy])):
+        for face, sign in (("top", 1.0), ("bottom", -1.0)):
+            stress = reached.at_face("stress", face)[side, 0, 0]
+            np.testing.assert_allclose(stress, sign * 6.0 * total / WIDTH / thickness**2, rtol=3e-2)
+
+
+def test_stresses_at_the_faces_of_two_layers():
+    """A soft layer with nu 0.49 on a stiff one with nu 0.3, bent in plane strain, against laminate theory."""
+    total, heights = 1e-9, np.array([0.5e-3, 0.3e-3])
+    young, poisson = np.array([3e5, 1e5]), np.array([0.3, 0.49])
+    mu = young / (2.0 * (1.0 + poisson))
+    laws = [
+        ms.MicropolarNeoHookean(m, 2.0 * m * nu / (1.0 - 2.0 * nu), 0.1 * m, 1e-6)
+        for m, nu in zip(mu, poisson, strict=True)
+    ]
+    mesh = ms.mesh.rectangle(LENGTH, WIDTH, (10, 1))
+    layers = [ms.Layer(height, law) for height, law in zip(heights, laws, strict=True)]
+    reached = bent(ms.Shell(mesh, layers=layers), total)
+    modulus = young / (1.0 - poisson**2)
+    ends = np.array([-0.5 * heights.sum(), heights[0] - 0.5 * heights.sum(), 0.5 * heights.sum()])
+    first, second = (modulus * np.diff(ends**power) / power for power in (2, 3))
+    neutral = first.sum() / (modulus * heights).sum()
+    curvature = total / WIDTH / (second.sum() - neutral * first.sum())
+    nodes, _ = across(mesh, 0.6 * LENGTH)
+    for face, k, z in (("bottom", 0, ends[0]), ("top", 1, ends[2])):
+        stress = reached.at_face("stress", face)[nodes]
+        np.testing.assert_allclose(stress[:, 0, 0], modulus[k] * curvature * (z - neutral), rtol=1e-2)
+        np.testing.assert_allclose(stress[:, 1, 1], poisson[k] * stress[:, 0, 0], rtol=1e-2)
+        assert np.abs(stress[:, 2, 2]).max() < 1e-2 * np.abs(stress[:, 0, 0]).max()
+    np.testing.assert_allclose(reached.resultant("moments")[nodes, 0, 0], total / WIDTH, rtol=1e-3)

@@ -34,14 +34,13 @@ def tex(output: Output, component: int | None) -> str:
     """The output, or a component (from 1), as mathematics; a whole vector stands for its length."""
     symbol = _letter(output)
     letter = _TEX.get(symbol, symbol if len(symbol) == 1 else rf"\mathrm{{{symbol}}}")
-    face = f" {output.face}" if output.face else ""
     if component is not None:
-        return f"${letter}_{{{output.suffixes[component - 1]}}}${face}"
-    return f"$|{letter}|${face}" if output.components > 1 else f"${letter}${face}"
+        return f"${letter}_{{{output.suffixes[component - 1]}}}$"
+    return f"$|{letter}|$" if output.components > 1 else f"${letter}$"
 
 
 def plain(output: Output, component: int | None = None) -> str:
-    """The same as text."""
+    """The same as text, with the face."""
     symbol = _letter(output)
     letter, face = _PLAIN.get(symbol, symbol), f" {output.face}" if output.face else ""
     if component is not None:
@@ -54,7 +53,7 @@ def _letter(output: Output) -> str:
 
 
 def bar_title(output: Output, component: int | None) -> str:
-    """What stands over a colour bar: letter and unit, as mathematics."""
+    """What stands over a colour bar: letter and unit, as mathematics, and the face."""
     unit, _ = shown_unit(output)
-    between = "\n" if output.face else " "
-    return tex(output, component) + (f"{between}({unit})" if unit else "")
+    title = tex(output, component) + (f" ({unit})" if unit else "")
+    return f"{title}\n{output.face}" if output.face else title
