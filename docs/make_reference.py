@@ -23,7 +23,7 @@ from pydantic_core import PydanticUndefined
 
 import magshell as ms
 from magshell import keys, units
-from magshell.evaluation.outputs import OUTPUTS
+from magshell.evaluation.outputs import OUTPUTS, Output
 from magshell.magnetics import COUPLINGS
 from magshell.magnetics.remanence import REMANENCES
 from magshell.materials import MATERIALS, keys_of
@@ -212,6 +212,15 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "side": "Which way along the mode.",
         },
     ),
+    "results": (
+        schema.ResultsTable,
+        {
+            "local_axis": "Its projection on the undeformed surface is the first local axis of tensors and resultants, "
+            "see [Strain and stress](stress.md#axes).",
+            "outputs": "Names of [outputs](pictures.md#what-can-be-shown) that `steps/*.vtu` and the page hold beside "
+            "the usual ones; `stress` stands for `stress_top`, `stress_middle` and `stress_bottom`.",
+        },
+    ),
     "solver": (
         schema.SolverTable,
         {
@@ -238,6 +247,7 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "supports": "What holds the shell.",
             "stages": "Parts of the load path, in sequence; left out: one, or as many as the longest history has.",
             "probes": "Nodes to follow: a name and the reference position.",
+            "results": "Axes of tensors, and what files hold beside the usual.",
             "solver": "How the path is followed.",
         },
     ),
@@ -295,6 +305,7 @@ OTHERWISE = {
     ("field", "history"): keys.HISTORY.otherwise,
     **{(name, key): a.otherwise for name, one in DESCRIBED.items() for key, a in one.keys.items() if a.otherwise},
     ("file", "field"): "none",
+    ("file", "results"): "see below",
     ("file", "solver"): "see below",
 }
 EXAMPLES = {
@@ -333,15 +344,22 @@ def pages() -> dict[pathlib.Path, dict[str, str]]:
 
 def outputs_table() -> str:
     """What a result holds."""
-    rows = ["| Name | Symbol | Unit | Of each | What it is |", "|---|---|---|---|---|"]
+    rows = ["| Name | Symbol | Unit | Of each | In files | What it is |", "|---|---|---|---|---|---|"]
     where = {"point": "node", "patch": "node and patch", "cell": "element"}
+    families: dict[str, list[Output]] = {}
     for output in OUTPUTS.values():
+        families.setdefault(output.name.removesuffix(f"_{output.face}"), []).append(output)
+    for output, *others in families.values():
         symbols = [f"`{output.symbol}`"] if output.has_length or output.components == 1 else []
         if output.components > 1:
             numbers = range(1, output.components + 1)
             symbols += [f"`{output.of_component(output.symbol, number)}`" for number in numbers]
-        unit = output.unit or "1"
-        rows.append(f"| `{output.name}` | {', '.join(symbols)} | {unit} | {where[output.where]} | {output.sentence} |")
+        names = ", ".join(f"`{one.name}`" for one in (output, *others))
+        usual = [one.face for one in (output, *others) if one.usual]
+        files = "yes" if usual == [""] else " and ".join(usual) or "on request"
+        sentence = output.sentence.split(";")[0].rstrip(".") + "." if others else output.sentence
+        columns = (names, ", ".join(symbols), output.unit or "1", where[output.where], files, sentence)
+        rows.append(f"| {' | '.join(columns)} |")
     return "\n".join(rows)
 
 

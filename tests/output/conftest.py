@@ -10,6 +10,7 @@ import pytest
 
 from magshell.evaluation.converged import Converged
 from magshell.evaluation.work import Work
+from magshell.magnetics import remanence
 from magshell.magnetics.field import UniformField
 from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.materials import MicropolarNeoHookean
@@ -21,6 +22,7 @@ from magshell.shell.state import State
 from magshell.solver.history import History
 
 RADIUS, LENGTH = 10e-3, 16e-3
+RUBBER = MicropolarNeoHookean(135e3, 3.25e6, 13.5e3, 9e-5)
 PROBES = {"tip": (LENGTH, 0, RADIUS), 'edge, "low"': (LENGTH, RADIUS, 0)}
 NOTHING = Loading(np.zeros(3), np.zeros(0), np.zeros((1, 11)))
 LOADS = (0.0, 0.1, 0.3, 0.6, 1.0)
@@ -95,7 +97,7 @@ def formulas(monkeypatch):
 class FakePath:
     """A path of formula states with the members that output reads."""
 
-    def __init__(self, loads=LOADS, probes=PROBES, field=(0.0, 0.0, 20e-3)):
+    def __init__(self, loads=LOADS, probes=PROBES, field=(0.0, 0.0, 20e-3), material=RUBBER, remanent=80e-3):
         mesh = cylinder(RADIUS, LENGTH, elements=(8, 6), angle=(0, 90), axis=(1, 0, 0), zero=(0, 1, 0))
         half = len(mesh.elements) // 2
         groups = {"lower": np.arange(half), "größer": np.arange(half, len(mesh.elements))}
@@ -103,7 +105,7 @@ class FakePath:
         self.model = SimpleNamespace(
             field=UniformField(field),
             coupling=MicropolarCouple(),
-            shell=Shell(mesh, 0.9e-3, MicropolarNeoHookean(135e3, 3.25e6, 13.5e3, 9e-5)),
+            shell=Shell(mesh, 0.9e-3, material, remanence.constant((0.0, 0.0, remanent))),
             outputs=("stress", "membrane_force"),
             named_supports=(),
             stages=[SimpleNamespace(branch=None)] * 3,

@@ -91,7 +91,7 @@ def groups(path: Path) -> list[Group]:
     """All series of the history that have something to show: no empty columns, and no round-off."""
     numbers = _numbers(path)
     found = []
-    for series in SERIES.values():
+    for series in (one for one in SERIES.values() if one.curves):
         columns = {name: numbers[name] for name in series.columns(path.model)}
         known = {name: values for name, values in columns.items() if np.isfinite(values).all()}
         largest = max((float(np.abs(values).max()) for values in known.values()), default=0.0)

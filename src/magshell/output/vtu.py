@@ -38,10 +38,9 @@ class VtuWriter(Observer):
 
     Points are reference positions (m): in ParaView, *Warp By Vector* with `displacement` shows the deformed
     shape. Point and cell arrays are the usual ones of `magshell.evaluation.outputs` and those that the model asks for;
-    their units and meaning are in the field data `outputs`, `units` and `meanings` (bytes of UTF-8, a line each), beside
-    `load_factor`, `step`,
-    `flux_density` and `flux_density_magnitude` (T). The time in the PVD file is the load factor plus the number of the
-    stages before, or, on a path that turns back, the number of the step.
+    their units and meaning are in the field data `outputs`, `units` and `meanings` (bytes of UTF-8, a line each),
+    beside `load_factor`, `step`, `flux_density` and `flux_density_magnitude` (T). The time in the PVD file is the load
+    factor plus the number of the stages before, or, on a path that turns back, the number of the step.
 
     Parameters
     ----------

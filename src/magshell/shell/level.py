@@ -50,6 +50,7 @@ def stress(w: Record, D: FloatArray, level: Record, laws: Laws, across: FloatArr
             _warp(w.P.reshape(9), 0, 3, 1, D, level.warping, w.shear)
             for fixed in range(9):
                 _warp(w.C, fixed, 27, 9, D, level.warping, w.shear)
+            for fixed in range(9):
                 _warp(w.C, 9 * fixed, 3, 1, D, level.warping, w.shear)
     w.P[0, 0] += w.memory_after[0]
     return energy + w.memory_after[0]

@@ -16,7 +16,8 @@ FINENESS = 160.0
 
 
 def stencils(elements: IntArray) -> tuple[dict[str, Any], dict[str, str]]:
-    """For each shape of the elements (elements, 8): functions `N` and derivatives `N1`, `N2` (points, nodes), and `triangles` (n, 3).
+    """For each shape of the elements (elements, 8): functions `N` and derivatives `N1`, `N2` (points, nodes), and
+    `triangles` (n, 3).
 
     Returns
     -------
