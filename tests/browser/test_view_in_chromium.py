@@ -7,6 +7,7 @@ import io
 import json
 import pathlib
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,8 +17,9 @@ from rolled import FIELD, mixed, plate, rolled
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
-from solver.models import strip
+from solver.models import THICKNESS, rubber, strip
 
+import magshell as ms
 from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import OUTPUTS
 from magshell.output.page import shown_steps, write_page
@@ -343,12 +345,20 @@ def solid_of(window: Browser, step: int) -> bytes:
     return base64.b64decode(window.driver.execute_script(script, step))
 
 
-@pytest.mark.parametrize("triangles", [False, True])
-def test_solid_of_a_step_is_closed(shared, path, tmp_path, triangles):
+def regions() -> Path:
+    """Two materials, one thickness: their border is a step where the strip is bent, and none at rest."""
+    whole = strip((4, 2))
+    mesh = replace(whole.shell.mesh, element_groups={"far": np.array([2, 3, 6, 7])})
+    shell = replace(whole.shell, mesh=mesh, regions=[ms.Region("far", material=rubber(THICKNESS, 0.2))])
+    return solve(replace(whole, shell=shell))
+
+
+@pytest.mark.parametrize("kind", ["quadrilaterals", "triangles too", "regions"])
+def test_solid_of_a_step_is_closed(shared, path, tmp_path, kind):
     """As exact as the page's numbers of 16 bits; its volume is that of the body that the command exports."""
     trimesh = pytest.importorskip("trimesh")
-    if triangles:
-        path = rolled(mixed(), 3)
+    if kind != "quadrilaterals":
+        path = regions() if kind == "regions" else rolled(mixed(), 3)
     shared.open(write_page(path, tmp_path / "view.html"))
     for number in (0, len(path.steps) // 2):  # at the last, the ends of the roll touch
         content = solid_of(shared, number)

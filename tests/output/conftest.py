@@ -54,6 +54,12 @@ class FakeConverged:
     def phi(self):
         return self.state.phi
 
+    def element_phi(self):
+        return self.state.phi[self.mesh.elements]
+
+    def element_stretch(self):
+        return np.zeros(self.mesh.elements.shape)
+
     def rotation(self):
         return 2 * self.state.q[:, 1:]
 
