@@ -7,6 +7,7 @@ import html
 import json
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -221,5 +222,5 @@ def test_problem_is_described_in_words(path, law, words):
     said = dict(facts(path, path.steps))
     assert said["material"] == f"{words}, shear modulus 135 kPa"
     assert (said["thickness"], said["remanence"]) == ("0.9 mm", "up to 80 mT")
-    path.discretisation.reference.remanence = 0 * path.discretisation.reference.remanence
+    path.model.shell = replace(path.model.shell, remanence=constant((0.0, 0.0, 0.0)))
     assert dict(facts(path, path.steps))["remanence"] == "none"
