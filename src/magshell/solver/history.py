@@ -21,12 +21,17 @@ class History:
     Parameters
     ----------
     discretisation : Discretisation
-    critical_points : sequence of CriticalPoint
+    steps, critical_points : sequence of Step, sequence of CriticalPoint
         Of the path, which may grow.
     """
 
-    def __init__(self, discretisation: Discretisation, critical_points: Sequence[CriticalPoint] = ()) -> None:
-        self._discretisation, self._critical_points = discretisation, critical_points
+    def __init__(
+        self,
+        discretisation: Discretisation,
+        steps: Sequence[Step] = (),
+        critical_points: Sequence[CriticalPoint] = (),
+    ) -> None:
+        self._discretisation, self._path, self._critical_points = discretisation, steps, critical_points
         self._steps: list[Step] = []
         self._rows: list[list[Number]] = []
         self._work: list[Work] = []
@@ -42,11 +47,12 @@ class History:
     def row(self, step: Step) -> list[Number]:
         """Numbers of a step, in the order of the columns; None where there is none.
 
-        Steps are asked for in their order; what was asked for before is kept.
+        Those of the steps before it are evaluated first, as work is summed; what was asked for is kept.
         """
-        if step.number >= len(self._rows):
-            self._steps.append(step)
-            self._rows.append(self._evaluated(step))
+        for one in [*self._path[len(self._rows) : step.number], step]:
+            if one.number == len(self._rows):
+                self._steps.append(one)
+                self._rows.append(self._evaluated(one))
         return self._rows[step.number]
 
     def rows(self, steps: Sequence[Step]) -> list[list[Number]]:
