@@ -78,6 +78,7 @@ class FakeConverged:
 
     reactions = ()
     magnetic_torque = (0.0, 0.0, 1e-6)
+    acting = "known"
 
     def work_from(self, before):
         return Work(1e-6, 2e-6)

@@ -111,6 +111,21 @@ def test_body_of_two_regions_is_closed_at_their_border(tmp_path):
     assert np.abs(converged(path.discretisation, path.steps[-1]).element_stretch()).max() > 1e-3
 
 
+def test_risers_too_low_for_the_numbers_of_the_file_are_left_out(tmp_path):
+    """Two materials in a weak field: their thicknesses differ by less than single precision tells."""
+    whole = strip((4, 2), field=(0.0, 0.0, 1e-7))
+    mesh = replace(whole.shell.mesh, element_groups={"far": np.array([2, 3, 6, 7])})
+    shell = replace(whole.shell, mesh=mesh, regions=[ms.Region("far", material=rubber(THICKNESS, 0.2))])
+    path = ms.solve(replace(whole, shell=shell))
+    body = slab_of(converged(path.discretisation, path.steps[-1]))
+    risers = len(closed_surface(body).triangles)
+    written = write_solid(path, tmp_path / "body.stl")
+    solid = trimesh.load(tmp_path / "body.stl")
+    assert len(solid.faces) == written.cells < risers
+    assert solid.is_watertight
+    assert solid.is_winding_consistent
+
+
 @pytest.mark.parametrize("pieces", [1, 2, 3, 5])
 @pytest.mark.parametrize("shapes", ["quadrilaterals", "triangles", "both"])
 def test_steps_of_the_thickness_are_closed(pieces, shapes):
