@@ -24,6 +24,7 @@ from pydantic_core import PydanticUndefined
 import magshell as ms
 from magshell import keys, units
 from magshell.evaluation.outputs import OUTPUTS, Output
+from magshell.evaluation.series import SERIES
 from magshell.magnetics import COUPLINGS
 from magshell.magnetics.remanence import REMANENCES
 from magshell.materials import MATERIALS, keys_of
@@ -35,6 +36,7 @@ from magshell.shell.elements import ELEMENTS
 
 PAGE = pathlib.Path(__file__).parent / "problem-file.md"
 RESULTS = pathlib.Path(__file__).parent / "pictures.md"
+REACTIONS = pathlib.Path(__file__).parent / "reactions.md"
 
 KINDS = {
     fields.Length: "length",
@@ -339,7 +341,7 @@ def pages() -> dict[pathlib.Path, dict[str, str]]:
     made = {name: table(name) for name in TABLES}
     made |= {name: f"```toml\n{examples.text(problem)}```" for name, problem in EXAMPLES.items()}
     made["units"] = units_table()
-    return {PAGE: made, RESULTS: {"outputs": outputs_table()}}
+    return {PAGE: made, RESULTS: {"outputs": outputs_table()}, REACTIONS: {"series": series_table()}}
 
 
 def outputs_table() -> str:
@@ -360,6 +362,13 @@ def outputs_table() -> str:
         sentence = output.sentence.split(";")[0].rstrip(".") + "." if others else output.sentence
         columns = (names, ", ".join(symbols), output.unit or "1", where[output.where], files, sentence)
         rows.append(f"| {' | '.join(columns)} |")
+    return "\n".join(rows)
+
+
+def series_table() -> str:
+    """What the history holds after field, probes and what only the path knows."""
+    rows = ["| Series | Unit | What it is |", "|---|---|---|"]
+    rows += [f"| {series.name} | {series.unit or '1'} | {series.sentence} |" for series in SERIES.values()]
     return "\n".join(rows)
 
 

@@ -56,6 +56,12 @@ class FakeConverged:
     def phi(self):
         return self.state.phi
 
+    def element_phi(self):
+        return self.state.phi[self.mesh.elements]
+
+    def element_stretch(self):
+        return np.zeros(self.mesh.elements.shape)
+
     def rotation(self):
         return 2 * self.state.q[:, 1:]
 
@@ -74,6 +80,7 @@ class FakeConverged:
 
     reactions = ()
     magnetic_torque = (0.0, 0.0, 1e-6)
+    acting = "known"
 
     def work_from(self, before):
         return Work(1e-6, 2e-6)

@@ -85,7 +85,7 @@ SERIES: dict[str, Series] = {
         Series(
             "energy",
             "J",
-            "Elastic energy of the shell, and magnetic energy where the coupling law has one.",
+            "Elastic energy of the shell (`elastic`), magnetic energy where the coupling law has one (`magnetic`).",
             lambda model: ["elastic", "magnetic"],
             lambda converged: [float(converged.energies[:, INTERNAL].sum()), _magnetic(converged)],
         ),
@@ -100,7 +100,7 @@ SERIES: dict[str, Series] = {
         Series(
             "magnetic torque",
             "N m",
-            "Total torque of the field on the shell.",
+            "Total torque of the field on the shell: `torque1`, `torque2`, `torque3`.",
             lambda model: ["torque1", "torque2", "torque3"],
             lambda converged: [float(number) for number in converged.magnetic_torque],
         ),

@@ -51,9 +51,9 @@ class Curve(NamedTuple):
         """For matplotlib, with mathematics."""
         if self.symbol == "|u|":
             return f"{self.name} $|u|$"
-        symbol = self.symbol.replace("_", " ")
+        symbol = self.symbol
         if self.component is not None:
-            letter = symbol if len(symbol) == 1 else rf"\mathrm{{{symbol}}}"
+            letter = symbol if len(symbol) == 1 else r"\mathrm{" + symbol.replace("_", r"\_") + "}"
             symbol = f"${letter}_{self.component}$"
         return f"{_literal(self.name)}  {symbol}".strip()
 

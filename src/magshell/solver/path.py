@@ -124,7 +124,7 @@ class Path:
     @cached_property
     def history(self) -> History:
         """The rows of `history.csv`, step by step."""
-        return History(self.discretisation, self.critical_points)
+        return History(self.discretisation, self.steps, self.critical_points)
 
     def table(self) -> Any:
         """The history as a pandas frame: a row for each converged step, the columns of `history.csv`.

@@ -13,6 +13,7 @@ from magshell.evaluation.patches import patches_of
 from magshell.output.curve import LOAD_TEXT, abscissa, displacements, load_per_mT
 from magshell.output.labels import plain, shown_unit
 from magshell.output.page.arrays import quantised, span, text
+from magshell.output.page.solid import solid
 from magshell.output.page.stencils import stencils
 from magshell.output.rounding import without_round_off
 from magshell.output.scene import best_axes
@@ -59,7 +60,8 @@ def collect(path: Path, steps: Sequence[Step], color: str, advance: Callable[[fl
     first, component = find(color)
     shown = page_outputs(path, first)
     kinds, arrays = stencils(patches.elements)
-    arrays |= {
+    body, arrays_of_body = solid(path, steps)
+    arrays |= arrays_of_body | {
         "points": text(mesh.points[patches.nodes], "<f4"),
         "edges": text(element_edges(mesh.elements), "<u4"),
         "outline": text(mesh.boundary_edges, "<u4"),
@@ -76,6 +78,7 @@ def collect(path: Path, steps: Sequence[Step], color: str, advance: Callable[[fl
         "outputs": outputs,
         "colour": f"{first.name} {_column(first, component)}",
         "mesh": kinds,
+        "solid": body,
         "edges": len(mesh.elements) <= MOST_ELEMENTS_WITH_EDGES,
         "hull": _hull(path, steps).tolist(),
         "view": _view(path),
