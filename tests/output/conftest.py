@@ -12,6 +12,7 @@ from magshell.evaluation.converged import Converged
 from magshell.evaluation.work import Work
 from magshell.magnetics.field import UniformField
 from magshell.magnetics.micropolar_couple import MicropolarCouple
+from magshell.magnetics.remanence import constant
 from magshell.materials import MicropolarNeoHookean
 from magshell.mesh import cylinder
 from magshell.model.course import Loading
@@ -98,7 +99,7 @@ class FakePath:
         self.model = SimpleNamespace(
             field=UniformField(field),
             coupling=MicropolarCouple(),
-            shell=Shell(mesh, 0.9e-3, MicropolarNeoHookean(135e3, 3.25e6, 13.5e3, 9e-5)),
+            shell=Shell(mesh, 0.9e-3, MicropolarNeoHookean(135e3, 3.25e6, 13.5e3, 9e-5), constant([0.0, 0.0, 80e-3])),
             outputs=("stress", "membrane_force"),
             named_supports=(),
             stages=[SimpleNamespace(branch=None)] * 3,

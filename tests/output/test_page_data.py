@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import dataclasses
 import html
 import json
 import re
@@ -16,6 +17,7 @@ from magshell.errors import InputError
 from magshell.evaluation import outputs
 from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import OUTPUTS, Output, find
+from magshell.magnetics.remanence import constant
 from magshell.materials import MicropolarMooneyRivlin, MicropolarNeoHookean, MicropolarStVenantKirchhoff
 from magshell.output.animation import draw_steps
 from magshell.output.page import page, shown_steps, steps, write_page
@@ -215,9 +217,10 @@ def test_new_output_appears_everywhere(path, tmp_path, monkeypatch, can_draw):
     ],
 )
 def test_problem_is_described_in_words(path, law, words):
-    object.__setattr__(path.model.shell, "material", type(law.__name__, (SimpleNamespace,), {})(shear_modulus=135e3))
+    material = law(shear_modulus=135e3, lame_lambda=3.25e6, coupling_modulus=13.5e3, length_scale=9e-5)
+    path.model.shell = dataclasses.replace(path.model.shell, material=material)
     said = dict(facts(path, path.steps))
     assert said["material"] == f"{words}, shear modulus 135 kPa"
     assert (said["thickness"], said["remanence"]) == ("0.9 mm", "up to 80 mT")
-    path.discretisation.reference.remanence = 0 * path.discretisation.reference.remanence
+    path.model.shell = dataclasses.replace(path.model.shell, remanence=constant([0, 0, 0]))
     assert dict(facts(path, path.steps))["remanence"] == "none"
