@@ -44,6 +44,10 @@ class FakeConverged:
         self.mesh = discretisation.mesh
         self._u = state.u[self.mesh.elements]
 
+    @property
+    def displacement(self):
+        return self.state.u
+
     def director(self):
         return self.discretisation.normals + self.state.w
 
