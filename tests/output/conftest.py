@@ -18,6 +18,7 @@ from magshell.mesh import cylinder
 from magshell.model.course import Loading
 from magshell.model.shell import Shell
 from magshell.output import rendering
+from magshell.shell.state import State
 from magshell.solver.history import History
 
 RADIUS, LENGTH = 10e-3, 16e-3
@@ -125,7 +126,8 @@ class FakePath:
         u = np.stack([-0.4 * LENGTH * s**3 * bend, 0.05 * X[:, 1] * s, LENGTH * s**2 * (0.8 + 20 * X[:, 2])], axis=1)
         q = np.zeros((len(u), 4))
         q[:, 0], q[:, 2] = np.cos(bend * s / 2), -np.sin(bend * s / 2)
-        state = SimpleNamespace(u=u * bend, w=6 * u * bend, phi=-0.3 * s * bend / RADIUS, q=q)
+        phi = -0.3 * s * bend / RADIUS
+        state = State(u=u * bend, w=6 * u * bend, phi=phi, q=q, s=np.zeros(len(u)), alpha=np.zeros((len(X), 0, 3)))
         return SimpleNamespace(
             number=number, load_factor=load, state=state, flux_density=load * self.model.field.vector,
             stage=0, arc_length=2.0 * load, negative_pivots=int(load == 0.6), loads=np.zeros(0),
