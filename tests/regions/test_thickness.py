@@ -86,7 +86,7 @@ def test_a_layer_may_taper():
 
 
 BAD = {
-    "along nowhere": (lambda: ms.thickness.profile([0, 0, 0], [0, 1], [1, 1]), r"thickness: along is \[0.0, 0.0, 0.0\]"),
+    "along nowhere": (lambda: ms.thickness.profile([0, 0, 0], [0, 1], [1, 1]), r"along is \[0.0, 0.0, 0.0\]"),
     "falling": (lambda: ms.thickness.profile([1, 0, 0], [1, 0], [1, 1]), "thickness: positions are .* that rise"),
     "too few": (lambda: ms.thickness.profile([1, 0, 0], [0, 1], [1]), "thickness: values has 1 entries; there are 2"),
     "shape": (lambda: heights(ms.thickness.function(lambda x: x)), r"the function returned shape \(16, 3\); expected"),
