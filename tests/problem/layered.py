@@ -39,7 +39,11 @@ levels = 3
 [[regions.layers]]
 thickness = "0.4 mm"
 density = "1 g/cm^3"
-material = { law = "micropolar-neo-hookean", shear_modulus = "60 kPa", lame_lambda = 0, coupling_modulus = "60 kPa", length_scale = "4 um" }
+material.law = "micropolar-neo-hookean"
+material.shear_modulus = "60 kPa"
+material.lame_lambda = 0
+material.coupling_modulus = "60 kPa"
+material.length_scale = "4 um"
 
 [[regions.layers]]
 thickness = { along = [1, 0, 0], positions = ["10 mm", "20 mm"], values = ["0.6 mm", "0.3 mm"] }

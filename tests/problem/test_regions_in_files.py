@@ -129,7 +129,7 @@ BROKEN = [
     Broken("offset out of sight", '"0.1 mm"', '"1 m"', "regions[0] ('outer')", ("offset is 1 m", "check the units")),
     Broken("layer of zero", '"0.4 mm"', "0", "regions[0].layers[0].thickness", ("not positive",)),
     Broken("layer without thickness", 'thickness = "0.4 mm"\n', "", "regions[0].layers[0].thickness", ("missing",)),
-    Broken("layer without material", 'length_scale = "4 um" }', 'length_scale = "4 um" }\nmaterials = 1', "regions[0].layers[0].materials", ("unknown key", "'material'")),
+    Broken("layer without material", 'length_scale = "4 um"', 'length_scale = "4 um"\nmaterials = 1', "regions[0].layers[0].materials", ("unknown key", "'material'")),
     Broken("unknown law", LAW, 'law = "micropolar-money-rivlin"', "regions[0].layers[1].material.law", ("'micropolar-money-rivlin'", "'micropolar-mooney-rivlin'")),
     Broken("no law", LAW, "", "regions[0].layers[1].material.law", ("missing", "micropolar-neo-hookean")),
     Broken("modulus in mm", '"100 kPa"\nlame', '"100 mm"\nlame', "regions[0].layers[1].material.shear_modulus", ("length", "stress")),

@@ -99,7 +99,7 @@ def test_a_remanence_is_asked_only_where_it_holds():
 
 
 def test_templates_of_regions_move_only_their_elements():
-    rolled = ms.remanence.template(ms.remanence.deformed(lambda x: x + [0.0, 0.0, 1e-3]), 0.1, [1, 0, 0])
+    rolled = ms.remanence.template(ms.remanence.deformed(lambda x: x + np.array([0.0, 0.0, 1e-3])), 0.1, [1, 0, 0])
     shell = of_regions(ms.Region("outer", remanence=rolled))
     points = shell.mesh.points[shell.mesh.elements]
     moved = ms.remanence.placed(shell.overall_remanence, shell.mesh, points) - points
