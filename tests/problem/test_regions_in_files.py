@@ -169,6 +169,21 @@ def test_says_what_is_wrong_and_where(case: Broken, tmp_path: Path, capsys: pyte
         assert word in error, f"{word!r} is not in {error!r}"
 
 
+@pytest.mark.parametrize(("core", "told"), [("60 kPa", False), ("10 Pa", True)])
+def test_layers_that_bend_apart_are_told(
+    core: str, told: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Faces of 0.4 mm on a core of 0.6 mm that is 6e-5 times as stiff bend about their own middles over some 10 mm."""
+    text = changed(REGIONS, ('"100 kPa"\nlame', f'"{core}"\nlame'), ('"1 MPa"', f'"{core}"'))
+    face = text[
+        text.index("[[regions.layers]]") : text.index("[[regions.layers]]", text.index("[[regions.layers]]") + 1)
+    ]
+    (tmp_path / "sandwich.toml").write_text(changed(text, ("[field]", face + "[field]")))
+    assert main(["check", str(tmp_path / "sandwich.toml")]) == 0
+    said = " ".join("".join(capsys.readouterr()).split())
+    assert ("layers of 'outer': within" in said) is told, said
+
+
 def test_a_remanence_that_no_element_takes_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     entry = 'kind = "constant"\nvector = ["143 mT", 0, 0]'
     (tmp_path / "lost.toml").write_text(changed(REGIONS, (entry, f'group = "outer"\n{entry}')))
