@@ -13,11 +13,13 @@ from conftest import LENGTH, RADIUS, FakePath
 from PIL import Image
 
 from magshell.errors import InputError
+from magshell.evaluation.converged import converged
 from magshell.magnetics.field import UniformField
 from magshell.output import rendering
 from magshell.output.curve import curve_figure
 from magshell.output.pictures import draw_curve, draw_pictures, draw_shape
 from magshell.output.scene import best_axes, draw, fit, viewing_axes
+from magshell.output.skin import skin_of
 from magshell.output.tessellation import Tessellation, element_edges
 from magshell.shell.shape_functions import NODES
 
@@ -76,10 +78,11 @@ def test_view_is_upright_and_shows_a_plate_from_above():
 
 def test_scene_puts_body_and_arrow_where_the_camera_says(path, can_draw):
     mesh, u = path.discretisation.mesh, path.steps[-1].state.u
-    tessellation = Tessellation(mesh.elements)
-    colours = np.tile(np.array([0, 120, 0], dtype=np.uint8), (len(tessellation.at_points(u)), 1))
+    skin = skin_of(path.model.shell)
+    colours = np.tile(np.array([0, 120, 0], dtype=np.uint8), (len(skin.at_points(u)), 1))
     width, height = 400, 300
-    scene, camera, arrow = draw(mesh, tessellation, u, colours, np.array([0, 0, 1e-3]), (width, height))
+    placed = skin.placed(converged(path.discretisation, path.steps[-1]))
+    scene, camera, arrow = draw(mesh, placed, colours, np.array([0, 0, 1e-3]), (width, height))
 
     def pixel(point):
         x, y = camera.on_picture(point)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -148,11 +150,11 @@ def test_loads_begin_on_the_part_or_end_there():
 
 def test_groups_have_tints_and_a_part_of_one_piece_is_plain():
     model = strip()
-    colours = tints(model.shell.mesh)
+    colours = tints(model.shell)
     near, far = (model.shell.mesh.elements_of(name) for name in ("near", "far"))
     assert len(np.unique(colours[near], axis=0)) == len(np.unique(colours[far], axis=0)) == 1
     assert (colours[near[0]] != colours[far[0]]).any()
-    assert len(np.unique(tints(ms.mesh.rectangle(1, 1, (2, 2))), axis=0)) == 1
+    assert len(np.unique(tints(dataclasses.replace(model.shell, mesh=ms.mesh.rectangle(1, 1, (2, 2)))), axis=0)) == 1
 
 
 def legend(element_groups):
@@ -161,7 +163,7 @@ def legend(element_groups):
     model = strip()
     _legend(
         figure,
-        ms.mesh.Mesh(mesh.points, mesh.elements, element_groups),
+        dataclasses.replace(model.shell, mesh=ms.mesh.Mesh(mesh.points, mesh.elements, element_groups)),
         remanence_marks(model, shown(model), AXES, False),
         False,
     )

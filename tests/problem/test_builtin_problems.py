@@ -69,13 +69,21 @@ PUBLISHED = [
 ]  # fmt: skip
 
 
+# Of several regions or layers: elements, area (mm²), thickness (mm) and E (kPa) of the layers of each part, probes.
+MADE_OF = {
+    "bilayer-strip": (32, 200.0, {"shell": [(0.6, 100.0), (0.4, 300.0)]}, "tip"),
+    "stepped-strip": (32, 200.0, {"shell": [(1.0, 300.0)], "outer": [(0.5, 300.0)]}, "step tip"),
+    "starfish": (132, 1.5 * 3**0.5 * 6**2 + 6 * 16 * 4.5, {"shell": [(0.8, 296.0)], "centre": [(1.6, 2960.0)]}, "tip-1 tip-4"),
+}  # fmt: skip
+
+
 @pytest.fixture(scope="module")
 def loaded() -> dict[str, Problem]:
     return {name: problem.load(name) for name in examples.names()}
 
 
 def test_every_built_in_problem_is_described_here() -> None:
-    assert examples.names() == sorted(example.name for example in [*EXAMPLES, *PUBLISHED])
+    assert examples.names() == sorted([*(example.name for example in [*EXAMPLES, *PUBLISHED]), *MADE_OF])
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=[example.name for example in EXAMPLES])
@@ -115,6 +123,22 @@ def test_is_the_published_problem(example: Published, loaded: dict[str, Problem]
     assert [load.total for load in this.file.loads] == [pytest.approx(load, rel=1e-15) for load in example.loads]
     assert list(this.model.probe_nodes) == example.probes.split()
     assert "Sze, Liu and Lo" in examples.text(example.name)
+    assert describe(this).warnings == []
+
+
+@pytest.mark.parametrize("name", MADE_OF)
+def test_is_made_of_what_the_file_says(name: str, loaded: dict[str, Problem]) -> None:
+    this, (elements, area, parts, probes) = loaded[name], MADE_OF[name]
+    shell = this.model.shell
+    assert len(shell.mesh.elements) == elements
+    assert _area(shell.mesh.points[shell.mesh.elements]) * 1e6 == pytest.approx(area, rel=1e-4)
+    assert [part.name for part in shell.parts] == list(parts)
+    for part, layers in zip(shell.parts, parts.values(), strict=True):
+        for layer, (thickness, modulus) in zip(part.layers, layers, strict=True):
+            mu, lam = layer.material.shear_modulus, layer.material.lame_lambda
+            assert layer.thickness == pytest.approx(thickness * 1e-3, rel=1e-15)
+            assert mu * (3 * lam + 2 * mu) / (lam + mu) == pytest.approx(modulus * 1e3, rel=1e-12)
+    assert list(this.model.probe_nodes) == probes.split()
     assert describe(this).warnings == []
 
 

@@ -230,8 +230,10 @@ class Mesh:
         chosen = self._select(name, "node", nodes, self.points[:, None], (x1, x2, x3))
         return self._with_groups(node_groups={**self.node_groups, name: chosen})
 
-    def select_elements(self, name: str, x1: Range = None, x2: Range = None, x3: Range = None) -> Mesh:
-        """The same mesh with one more element group: the elements between these coordinates.
+    def select_elements(
+        self, name: str, x1: Range = None, x2: Range = None, x3: Range = None, groups: Sequence[str] | None = None
+    ) -> Mesh:
+        """The same mesh with one more element group: the elements between these coordinates, of some groups or of all.
 
         Parameters
         ----------
@@ -239,17 +241,25 @@ class Mesh:
             Of the new group.
         x1, x2, x3 : (float, float) or None
             Least and greatest coordinate, m, met to within 1e-6 of the size of the mesh; None leaves one free.
+        groups : sequence of str, optional
+            Element groups to choose from; by default the whole mesh.
 
         Raises
         ------
         InputError
-            No element is there, one lies across a bound, no range is given, or the name is taken.
+            No such group, no element is there, one lies across a bound, nothing is given, or the name is taken.
         """
         check_name(name, "element", self._kinds)
+        members = np.arange(len(self.elements))
+        if groups is not None:
+            members = np.unique(np.concatenate([self.elements_of(group) for group in groups]))
+        ranges = (x1, x2, x3)
         try:
-            chosen = locked(elements_between(self.points, self.elements, (x1, x2, x3), self.size))
+            if groups is None or any(bounds is not None for bounds in ranges):
+                members = members[elements_between(self.points, self.elements[members], ranges, self.size)]
         except InputError as error:
             raise InputError(f"Group '{name}': {error}.") from None
+        chosen = locked(members)
         return self._with_groups(element_groups={**self.element_groups, name: chosen})
 
     def _select(

@@ -35,7 +35,7 @@ def elements_between(points: FloatArray, elements: IntArray, ranges: Sequence[Ra
     """
     given = {axis: np.asarray(bounds, dtype=float) for axis, bounds in enumerate(ranges) if bounds is not None}
     if not given:
-        raise InputError("give at least one of the ranges x1, x2, x3")
+        raise InputError("give at least one of the ranges x1, x2, x3, or groups")
     for axis, bounds in given.items():
         if bounds.shape != (2,) or not np.isfinite(bounds).all() or bounds[0] >= bounds[1]:
             raise InputError(f"x{axis + 1} is {bounds.tolist()}; it must be a least and a greatest coordinate, m")
@@ -49,7 +49,7 @@ def elements_between(points: FloatArray, elements: IntArray, ranges: Sequence[Ra
     if across.size:
         element = int(across[0])
         raise InputError(
-            f"element {element}, from {place(x[element].min(axis=0))} to {place(x[element].max(axis=0))}, lies across "
+            f"an element, from {place(x[element].min(axis=0))} to {place(x[element].max(axis=0))}, lies across "
             "a bound of the range; the edges of elements must lie there"
         )
     if not whole.any():

@@ -233,7 +233,8 @@ def _name(number: int, group: Group) -> str:
     if isinstance(group, str):
         return group
     if len(group) and all(isinstance(one, str) for one in group):
-        return ", ".join(map(str, group))
+        names = [str(one) for one in group]
+        return ", ".join(names) if len(names) < 4 else f"{names[0]}, {names[1]}, … {names[-1]}"
     return f"regions[{number}]"
 
 

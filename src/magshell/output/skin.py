@@ -124,6 +124,38 @@ def sides_of(mesh: Mesh) -> Sides:
     return Sides(numbers, partners)
 
 
+class Nodal(NamedTuple):
+    """A hull as elements of eight nodes, top faces first, each with nodes of its own.
+
+    Attributes
+    ----------
+    elements : IntArray, shape (m, 8)
+    element_of : IntArray, shape (m,)
+        The element of the mesh.
+    tops : int
+        How many are top faces.
+    nodes : IntArray, shape (k,)
+        The row that each node belongs to, and
+    heights : FloatArray, shape (k,)
+        its height over the mesh, m.
+    inner, outer : IntArray, shape (n, 3)
+        Edges: end, end, middle.
+    """
+
+    elements: IntArray
+    element_of: IntArray
+    tops: int
+    nodes: IntArray
+    heights: FloatArray
+    inner: IntArray
+    outer: IntArray
+
+
+UPSIDE_DOWN = np.array([0, 3, 2, 1, 7, 6, 5, 4])
+"""The nodes of a quadrilateral as seen from below."""
+TRIANGLE_UPSIDE_DOWN = np.array([0, 2, 1, 1, 7, 5, 1, 4])
+
+
 class Hull:
     """The body between two faces.
 
@@ -185,6 +217,29 @@ class Hull:
         flat = self._cells.on_elements(values)
         on_walls = np.repeat(values[self._wall_elements], self._cells.pieces + 1, axis=0)
         return np.concatenate([flat, flat, on_walls, on_walls])
+
+    def nodal(self, rows: IntArray) -> Nodal:
+        """The hull as elements, for those who place its nodes themselves, with `rows` (elements, 8) of the mesh."""
+        count, own = len(self._mesh.elements), self._nodes
+        below = np.where(self._mesh.triangles[:, None], own[:, TRIANGLE_UPSIDE_DOWN], own[:, UPSIDE_DOWN]) + own.size
+        start, end, middle = self._walls.T
+        posts = 2 * own.size + np.arange(2 * len(start)).reshape(2, -1)
+        up = own.size
+        walls = np.stack([start + up, end + up, end, start, middle + up, posts[1], middle, posts[0]], axis=1).reshape(
+            -1, 8
+        )
+        bottom, top = np.moveaxis(self._heights, 2, 0)
+        amid = 0.5 * (bottom + top).ravel()
+        nodes = rows.ravel()
+        return Nodal(
+            elements=np.concatenate([own, below, walls]),
+            element_of=np.concatenate([np.arange(count), np.arange(count), self._wall_elements]),
+            tops=count,
+            nodes=np.concatenate([nodes, nodes, nodes[start], nodes[end]]),
+            heights=np.concatenate([top.ravel(), bottom.ravel(), amid[start], amid[end]]),
+            inner=np.concatenate([self._inner, self._inner + up]),
+            outer=np.concatenate([self._lines, self._lines + up]),
+        )
 
     def faces(self, reached: Converged) -> FloatArray:
         """Positions (2, elements, 8, 3) of the bottom and the top face: x = X + u + z (1 + z φ) d, m."""

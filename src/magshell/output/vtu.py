@@ -16,6 +16,7 @@ from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import Output, chosen
 from magshell.evaluation.patches import patches_of
 from magshell.files import naming, refuse_somebodys, with_suffix, write_atomically
+from magshell.model.words import name_of
 from magshell.shell.triangle import REPEATED, SLOTS
 from magshell.solver.events import Observer
 
@@ -39,8 +40,9 @@ class VtuWriter(Observer):
     Points are reference positions (m): in ParaView, *Warp By Vector* with `displacement` shows the deformed
     shape. Point and cell arrays are the usual ones of `magshell.evaluation.outputs` and those that the model asks for;
     their units and meaning are in the field data `outputs`, `units` and `meanings` (bytes of UTF-8, a line each),
-    beside `load_factor`, `step`, `flux_density` and `flux_density_magnitude` (T). The time in the PVD file is the load
-    factor plus the number of the stages before, or, on a path that turns back, the number of the step.
+    beside `load_factor`, `step`, `flux_density` and `flux_density_magnitude` (T). The cell array `region` numbers the
+    regions in the field data `region_names`. The time in the PVD file is the load factor plus the number of the
+    stages before, or, on a path that turns back, the number of the step.
 
     Parameters
     ----------
@@ -167,6 +169,10 @@ def grid(discretisation: Discretisation, step: Step | CriticalPoint | BucklingMo
         data.set_array(values[patches.nodes] if output.where == "point" else values, output.name)
     result.point_data.set_array(patches.nodes, "node")
     annotate(result, mesh, step, outputs)
+    shell = discretisation.model.shell
+    if not shell.plain:
+        result.cell_data.set_array(shell.part_of, "region")
+        _add_texts(result, "region_names", [name_of(part) for part in shell.parts])
     result.point_data.active_vectors_name = "displacement"
     return result
 

@@ -125,7 +125,11 @@ def _one_each(what: str) -> Callable[[object], object]:
 
 
 def _offset(value: object) -> object:
-    return value if value in OFFSETS else _read(value, units.LENGTH)
+    if value in OFFSETS:
+        return value
+    if isinstance(value, str) and value[:1].isalpha():
+        raise InputError(f"{units.quoted(value)} is neither a face nor a length. {suggest(value, OFFSETS)}")
+    return _read(value, units.LENGTH)
 
 
 def _levels(value: object) -> object:

@@ -14,8 +14,12 @@ from magshell.model.region import Layer
 from magshell.model.words import name_of, offset_of, thickness_of
 from magshell.problem import remanence_report
 from magshell.problem.building import Problem
+from magshell.shell.shear_profile import Moduli, stiffness
 from magshell.units import DENSITY, FLUX_DENSITY, LENGTH, MASS, STRESS, show
 from magshell.wording import counted
+
+SHORT = 0.1
+"""Part of the extent of the shell over which layers may bend apart unnoticed."""
 
 
 def has_several(problem: Problem) -> bool:
@@ -30,7 +34,7 @@ def lines(problem: Problem) -> Iterator[tuple[str, str]]:
     for part in shell.parts:
         mass = part_mass(part, shell, problem.model.normals)
         yield (
-            name_of(part),
+            name_of(part) if len(shell.parts) > 1 else "whole shell",
             f"{counted(len(part.elements), 'element')}, thickness {thickness_of(part)}{offset_of(part)}"
             + ("" if mass is None else f", mass {show(mass, MASS)}"),
         )
@@ -78,7 +82,7 @@ def remanences(problem: Problem) -> Iterator[tuple[str, str]]:
             yield ", ".join(entry.group or (name,)), remanence_report.sense(entry)
         for number, layer in enumerate(layers):
             for entry in layer.remanence:
-                yield f"{name} layer {number}".strip(), remanence_report.sense(entry)
+                yield f"{name or 'shell'} layer {number}", remanence_report.sense(entry)
 
 
 def shared(problem: Problem) -> IntArray:
@@ -102,3 +106,27 @@ def doubts(problem: Problem) -> Iterator[str]:
                 )
         if entry.group is None and not of_shell.size:
             yield f"remanence[{number}]: no element has it: all regions have their own remanence or layers"
+    yield from _layers_that_bend_apart(problem)
+
+
+def _layers_that_bend_apart(problem: Problem) -> Iterator[str]:
+    """Stacks that one director does not describe: stiff layers that a soft one hardly ties to each other.
+
+    Beside a clamp or a load each layer bends about its own middle, over the length √(D' (1 - D'/D)/K) with the bending
+    stiffness D of the stack, D' = Σ E' h³/12 of its layers alone, and its shear stiffness K.
+    """
+    mesh = problem.model.shell.mesh
+    extent = float(np.ptp(mesh.points, axis=0).max())
+    for part in problem.model.shell.parts:
+        if len(part.layers) < 2:
+            continue
+        moduli = [Moduli.of(layer.material) for layer in part.layers]
+        whole = stiffness(part.at_nodes, moduli)
+        alone = part.at_nodes**3 @ np.array([one.plane for one in moduli]) / 12.0
+        length = float(np.sqrt(alone * (1.0 - alone / whole.bending) / whole.shear).max())
+        if length > SHORT * extent:
+            yield (
+                f"layers of '{name_of(part)}': within {show(length, LENGTH)} of clamps, loads and borders the stiff "
+                "ones bend apart, since the soft ones hardly tie them; the model, in which all share a director, is "
+                "too stiff there"
+            )

@@ -10,6 +10,11 @@ class Body {
     }));
     this.edges = stored("edges", Uint32Array);
     this.outline = stored("outline", Uint32Array);
+    this.thick = mesh.thick; // both faces are drawn: nodes of their own, each at a height over one of the mesh
+    this.nodes = this.thick && stored("nodes", Uint32Array);
+    this.heights = this.thick && stored("heights", Float32Array);
+    this.drawnEdges = this.thick ? stored("drawn-edges", Uint32Array) : this.edges;
+    this.drawnOutline = this.thick ? stored("drawn-outline", Uint32Array) : this.outline;
     this.along = mesh.along; // functions of an edge's nodes (end, end, middle) at points along it
     const size = this.kinds.reduce((sum, kind) => sum + kind.numbers.length * kind.N.length, 0);
     this.positions = new Float32Array(3 * size);
@@ -44,6 +49,18 @@ class Body {
     const moved = new Float32Array(this.reference);
     for (let k = 0; k < 3; k++) for (let i = 0; i < columns[k].length; i++) moved[3 * i + k] += columns[k][i] || 0;
     return moved;
+  }
+
+  // Positions (flat) of the nodes that are drawn: x + z (1 + z phi) d at their heights z, or those of the mesh.
+  drawn(moved, directors, phi) {
+    if (!this.thick) return moved;
+    const { nodes, heights } = this;
+    const drawn = new Float32Array(3 * nodes.length);
+    for (let i = 0; i < nodes.length; i++) {
+      const n = nodes[i], z = heights[i] * (1 + heights[i] * (phi[n] || 0));
+      for (let k = 0; k < 3; k++) drawn[3 * i + k] = moved[3 * n + k] + z * (directors[k][n] || 0);
+    }
+    return drawn;
   }
 
   // Points and unit normals of the surface through nodes at these positions.
@@ -89,7 +106,10 @@ class Body {
             continue;
           }
           let sum = 0;
-          for (let n = 0; n < nodes; n++) sum += N[m][n] * values[elements[e * nodes + n]];
+          for (let n = 0; n < nodes; n++) {
+            const node = elements[e * nodes + n];
+            sum += N[m][n] * values[this.thick ? this.nodes[node] : node];
+          }
           this.values[at] = Number.isNaN(sum) ? 3e38 : sum;
         }
       }
@@ -117,13 +137,13 @@ class Body {
   // Arrows (middle, vector) on up to `most` elements, spread evenly; `length` is that of the longest.
   arrows(columns, most, length) {
     const longest = Math.max(...columns[0].map((_, i) => Math.hypot(...columns.map((c) => c[i] || 0)))) || 1;
-    const count = this.kinds.reduce((sum, kind) => sum + kind.numbers.length, 0);
+    const count = this.kinds.reduce((sum, kind) => sum + kind.tops, 0);
     const every = Math.max(1, Math.ceil(count / most));
     const result = [];
     let at = 0, seen = 0;
-    for (const { numbers, N } of this.kinds) {
-      for (let e = 0; e < numbers.length; e++, seen++, at += 3 * N.length) {
-        if (seen % every) continue;
+    for (const { numbers, N, tops } of this.kinds) {
+      for (let e = 0; e < numbers.length; e++, at += 3 * N.length) {
+        if (e >= tops || seen++ % every) continue;
         const vector = columns.map((column) => ((column[numbers[e]] || 0) * length) / longest);
         if (Math.hypot(...vector) < 1e-6 * length) continue;
         const middle = [0, 1, 2].map((k) => {

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
+from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import Output, chosen, find
 from magshell.evaluation.patches import patches_of
 from magshell.output.curve import LOAD_TEXT, abscissa, displacements, load_per_mT
@@ -18,8 +19,7 @@ from magshell.output.page.stencils import stencils
 from magshell.output.rounding import without_round_off
 from magshell.output.scene import best_axes
 from magshell.output.series import Curve, groups
-from magshell.output.skin import MOST_ELEMENTS_WITH_EDGES
-from magshell.output.tessellation import element_edges
+from magshell.output.skin import MOST_ELEMENTS_WITH_EDGES, skin_of
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh
@@ -59,12 +59,10 @@ def collect(path: Path, steps: Sequence[Step], color: str, advance: Callable[[fl
     mesh, patches = path.discretisation.mesh, patches_of(path.model.shell)
     first, component = find(color)
     shown = page_outputs(path, first)
-    kinds, arrays = stencils(patches.elements)
+    kinds, arrays = stencils(path.model.shell)
     body, arrays_of_body = solid(path, steps)
     arrays |= arrays_of_body | {
         "points": text(mesh.points[patches.nodes], "<f4"),
-        "edges": text(element_edges(mesh.elements), "<u4"),
-        "outline": text(mesh.boundary_edges, "<u4"),
         "sequential": text(_colours("viridis"), "u1"),
         "diverging": text(_colours("coolwarm"), "u1"),
     }
@@ -203,8 +201,8 @@ def _hull(path: Path, steps: Sequence[Step]) -> FloatArray:
     height, turn = 1.0 - 2.0 * number / DIRECTIONS, np.pi * (1.0 + 5.0**0.5) * number
     ring = np.sqrt(1.0 - height**2)
     directions = np.stack([ring * np.cos(turn), ring * np.sin(turn), height])
-    mesh = path.discretisation.mesh
-    positions = (mesh.points + step.state.displacement(len(mesh.points)) for step in steps)
+    skin = skin_of(path.model.shell)
+    positions = (skin.extent(converged(path.discretisation, step)) for step in steps)
     extreme = np.concatenate([x[np.unique((x @ directions).argmax(axis=0))] for x in positions])
     return np.asarray(extreme[np.unique((extreme @ directions).argmax(axis=0))])
 

@@ -37,12 +37,15 @@ function startShape() {
 
 function showShape() {
   if (!scene) return;
-  const nodal = body.moved(quantities.get("displacement").columns(state.step));
+  const moved = body.moved(quantities.get("displacement").columns(state.step));
+  const nodal = body.thick
+    ? body.drawn(moved, quantities.get("director").columns(state.step), quantities.get("phi").column(state.step, 0))
+    : moved;
   body.place(nodal);
   scene.fill(scene.surface, "position", body.positions);
   scene.fill(scene.surface, "normal", body.normals);
-  scene.setInstances(scene.rim, "start", body.segments(nodal, body.outline));
-  if (at("edges").checked) scene.setInstances(scene.grid, "start", body.segments(nodal, body.edges));
+  scene.setInstances(scene.rim, "start", body.segments(nodal, body.drawnOutline));
+  if (at("edges").checked) scene.setInstances(scene.grid, "start", body.segments(nodal, body.drawnEdges));
   if (at("arrows").checked) {
     const { output, most, length } = header.arrows;
     const vectors = quantities.get(output).columns(state.step);

@@ -22,9 +22,9 @@ def build_mesh(table: schema.Mesh, folder: pathlib.Path) -> Mesh:
     else:
         with at("mesh"):
             mesh = _generated(table)
-    for name, between in table.element_groups.items():
+    for name, chosen in table.element_groups.items():
         with at(f"mesh.element_groups.{name}"):
-            mesh = mesh.select_elements(name, between.x1, between.x2, between.x3)
+            mesh = mesh.select_elements(name, chosen.x1, chosen.x2, chosen.x3, chosen.groups)
     for name, selection in table.edge_groups.items():
         with at(f"mesh.edge_groups.{name}"):
             mesh = mesh.select_edges(name, selection.x1, selection.x2, selection.x3)

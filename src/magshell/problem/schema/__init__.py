@@ -22,10 +22,10 @@ from magshell.problem.schema.loading import FieldTable, LoadTable, SupportTable
 from magshell.problem.schema.material import MaterialTable
 from magshell.problem.schema.mesh import (
     Annulus,
-    Between,
     Block,
     Blocks,
     Cylinder,
+    Elements,
     Mesh,
     MeshFile,
     Rectangle,
@@ -41,10 +41,10 @@ from magshell.problem.schema.table import Table, key_error
 
 __all__ = [
     "Annulus",
-    "Between",
     "Block",
     "Blocks",
     "Cylinder",
+    "Elements",
     "FieldTable",
     "FoldTable",
     "LayerTable",

@@ -25,22 +25,23 @@ class Selection(Table):
         return self
 
 
-class Between(Table):
-    """Everything between these coordinates."""
+class Elements(Table):
+    """The elements between these coordinates, of some groups or of all."""
 
     x1: f.LengthRange | None = None
     x2: f.LengthRange | None = None
     x3: f.LengthRange | None = None
+    groups: f.Names | None = None
 
     @model_validator(mode="after")
-    def _selects_something(self) -> Between:
-        if self.x1 is None and self.x2 is None and self.x3 is None:
-            raise InputError("selects nothing; give at least one of x1, x2, x3")
+    def _selects_something(self) -> Elements:
+        if self.x1 is None and self.x2 is None and self.x3 is None and self.groups is None:
+            raise InputError("selects nothing; give at least one of x1, x2, x3, groups")
         return self
 
 
 class _Groups(Table):
-    element_groups: dict[f.Name, Between] = {}
+    element_groups: dict[f.Name, Elements] = {}
     edge_groups: dict[f.Name, Selection] = {}
     node_groups: dict[f.Name, Selection] = {}
 
