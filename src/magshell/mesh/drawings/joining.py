@@ -103,7 +103,7 @@ class Joined:
         self.open = [chain for chain in chains if not chain.closed]
         if self._widest > EXACT * self.size:
             self.notes.append(
-                f"{self._gaps} gap{'s' * (self._gaps > 1)} between ends of lines closed, at most {self._widest:.2g} mm wide"
+                f"{self._gaps} gap{'s' * (self._gaps > 1)} between ends of lines closed, up to {self._widest:.2g} mm"
             )
 
     def _long_enough(self, pieces: list[Piece]) -> list[Piece]:

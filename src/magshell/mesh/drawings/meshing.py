@@ -13,7 +13,7 @@ from magshell.mesh.drawings.joining import Chain
 from magshell.mesh.drawings.nesting import NEAR, Plan
 from magshell.mesh.drawings.pieces import Piece
 from magshell.mesh.files.assembling import FileMesh
-from magshell.mesh.files.cad import ATTEMPTS, MANY, QUASI_STRUCTURED, Attempt, best, set_size
+from magshell.mesh.files.cad import ATTEMPTS, MANY, QUASI_STRUCTURED, Attempt, best, use_size
 from magshell.mesh.files.session import session
 
 SPAN = np.radians(60.0)
@@ -29,7 +29,7 @@ def mesh_plan(plan: Plan, name: str, size: float) -> FileMesh:
     with session(name) as gmsh:
         pencil = _Pencil(gmsh, plan, size)
         pencil.draw()
-        set_size(gmsh, size, "mm", "")
+        use_size(gmsh, size, plan.area, "mm")
         attempts: tuple[Attempt, ...] = ATTEMPTS
         if plan.area > MANY * size**2:
             attempts = tuple(sorted(attempts, key=lambda each: (not each.recombine, each == QUASI_STRUCTURED)))
