@@ -8,6 +8,7 @@ import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
+from magshell.mesh.files.normals import BoolArray
 from magshell.mesh.geometry import unit
 from magshell.mesh.solids.locating import locator_of
 from magshell.mesh.solids.skin import Skin
@@ -100,7 +101,7 @@ def sides_of(skin: Skin, patch: IntArray | None, name: str) -> Sides:
     )
 
 
-def _at_a_fold(skin: Skin, patch: IntArray, sheets: IntArray, points: FloatArray, reach: float) -> IntArray:
+def _at_a_fold(skin: Skin, patch: IntArray, sheets: BoolArray, points: FloatArray, reach: float) -> BoolArray:
     """Which points (k, 3) are near an edge between two faces of a side: there is nothing opposite outside of a bend."""
     beyond, _ = skin.neighbours
     triangle, side = np.nonzero((patch[:, None] != patch[beyond]) & sheets[patch][:, None] & sheets[patch[beyond]])
@@ -183,7 +184,7 @@ def _median(values: FloatArray, weights: FloatArray) -> float:
     return float(values[order][np.searchsorted(total, 0.5 * total[-1])])
 
 
-def _two_sides(skin: Skin, sheet: IntArray, owner: IntArray, hit: IntArray, name: str) -> tuple[IntArray, IntArray]:
+def _two_sides(skin: Skin, sheet: BoolArray, owner: IntArray, hit: IntArray, name: str) -> tuple[IntArray, IntArray]:
     """Triangles of the upper and lower side: connected sheets, paired by what lies opposite."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
@@ -207,7 +208,7 @@ def _two_sides(skin: Skin, sheet: IntArray, owner: IntArray, hit: IntArray, name
     return np.flatnonzero(top), np.flatnonzero(sheet & ~top)
 
 
-def _is_up(skin: Skin, one: IntArray, other: IntArray) -> bool:
+def _is_up(skin: Skin, one: BoolArray, other: BoolArray) -> bool:
     """Whether one of two sides faces up, or outward."""
     mean = unit(skin.vectors[one].sum(axis=0) - skin.vectors[other].sum(axis=0))
     flat = np.linalg.norm(skin.vectors[one].sum(axis=0)) > 1e-3 * skin.areas[one].sum()
@@ -215,7 +216,7 @@ def _is_up(skin: Skin, one: IntArray, other: IntArray) -> bool:
     return bool(mean[axis] > 0.0) if flat else bool(skin.areas[one].sum() > skin.areas[other].sum())
 
 
-def _must_be_all(skin: Skin, sheet: IntArray, thickness: float, upper: IntArray, lower: IntArray, name: str) -> None:
+def _must_be_all(skin: Skin, sheet: BoolArray, thickness: float, upper: IntArray, lower: IntArray, name: str) -> None:
     """Refuse a solid that is more than its two sides and an edge across them."""
     volume = 0.5 * thickness * float(skin.areas[upper].sum() + skin.areas[lower].sum())
     if abs(volume - skin.volume) <= WHOLE * skin.volume:
