@@ -175,14 +175,11 @@ class _Pencil:
 
     def _splines(self, points: FloatArray) -> list[int]:
         """A curve through points; a closed one in three pieces that meet smoothly."""
-        tangents = _tangents(points)
         parts = 3 if (points[0] == points[-1]).all() else 1
         ends = np.linspace(0, len(points) - 1, parts + 1).round().astype(int)
         tags = []
         for begin, end in pairwise(ends.tolist()):
-            inside = [self._point(point) for point in points[begin : end + 1]]
-            along = [*tangents[begin], 0.0, *tangents[end], 0.0]
-            tags.append(self.gmsh.model.occ.addSpline(inside, tangents=along))
+            tags.append(self.gmsh.model.occ.addSpline([self._point(point) for point in points[begin : end + 1]]))
         return tags
 
 
@@ -191,17 +188,3 @@ def _turn(one: Piece, other: Piece) -> float:
     ahead, following = one.points[-1] - one.points[-2], other.points[1] - other.points[0]
     across = ahead[0] * following[1] - ahead[1] * following[0]
     return float(abs(np.arctan2(across, ahead @ following)))
-
-
-def _tangents(points: FloatArray) -> FloatArray:
-    """Of parabolas through three points in a row, (k, 2); around the end of a closed smooth curve."""
-    chords = np.diff(points, axis=0)
-    length = np.linalg.norm(chords, axis=1, keepdims=True)
-    slope = chords / length
-    inside = (slope[:-1] * length[1:] + slope[1:] * length[:-1]) / (length[1:] + length[:-1])
-    first, last = 2.0 * slope[0] - inside[0], 2.0 * slope[-1] - inside[-1]
-    if (points[0] == points[-1]).all() and slope[0] @ slope[-1] > np.cos(SMOOTH):
-        first = last = (slope[-1] * length[0] + slope[0] * length[-1]) / (length[0] + length[-1])
-    every = np.concatenate([[first], inside, [last]])
-    result: FloatArray = every / np.linalg.norm(every, axis=1, keepdims=True)
-    return result
