@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 
 import pytest
+from files.same import attempted
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -12,7 +13,6 @@ import magshell as ms
 from magshell.errors import InputError
 from magshell.mesh.drawings.table import read_table
 
-from ..files.same import attempted
 from .sheets import SQUARE, dxf, lines, needs_drawings
 
 WRONG = {

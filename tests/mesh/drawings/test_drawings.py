@@ -143,6 +143,11 @@ WAYS = {
         ],
         {}, 200, ["cut", "cut-edges"],
     ),
+    "a hole, then an area": (
+        lambda space, _: (lines(space, SQUARE), space.add_circle((3, 5), 2, dxfattribs=ADDED),
+                          lines(space, [(6, 0), (10, 0), (10, 10), (6, 10)], "tip")),
+        {}, 100 - 4 * np.pi, ["cut", "tip", "cut-edges", "tip-edges", "hole-1"],
+    ),
     "an island in a hole": (
         lambda space, _: [lines(space, [(x, y) for x, y in [(a, a), (10 - a, a), (10 - a, 10 - a), (a, 10 - a)]])
                           for a in (0, 2, 4)],

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import importlib.util
 import pathlib
+from itertools import permutations
 
 import numpy as np
 import pytest
+from drawings.sheets import area, normals
+from files.test_skins import box, rounded_plate, sphere
 
 import magshell as ms
 from magshell.errors import InputError
@@ -14,8 +17,6 @@ from magshell.mesh.files.session import session
 from magshell.mesh.solids.pairing import sides_of
 from magshell.mesh.solids.skin import skin_from
 
-from ..drawings.sheets import area, normals
-from ..files.test_skins import box, rounded_plate, sphere
 from .bodies import angle, arch, plate, written
 
 DATA = pathlib.Path(__file__).parent / "data"
@@ -65,7 +66,7 @@ def test_a_flat_plate_at_an_angle_with_a_hole(tmp_path):
         gmsh.model.mesh.generate(2)
         gmsh.write(str(tmp_path / "part.stl"))
     axis = np.array([1, 2, 3]) / 14**0.5
-    cross = np.cross(np.eye(3), axis)
+    cross = np.cross(axis, np.eye(3))
     turn = np.cos(0.7) * np.eye(3) + np.sin(0.7) * cross.T + (1 - np.cos(0.7)) * np.outer(axis, axis)
     for name, unit in (("part.stl", "mm"), ("part.step", None)):
         mesh = ms.mesh.mid_surface(tmp_path / name, size=1.2e-3, unit=unit)
@@ -148,30 +149,27 @@ def test_tetrahedra_and_hexahedra(tmp_path):
     number = np.arange(60).reshape(5, 4, 3)
     corner = number[:-1, :-1, :-1].ravel()[:, None]
     cubes = corner + np.array([0, 12, 15, 3, 1, 13, 16, 4])
-    split = [[0, 1, 3, 4], [1, 2, 3, 6], [1, 3, 4, 6], [1, 4, 5, 6], [3, 4, 6, 7]]
-    for name, kind, cells in (
-        ("cubes.vtu", "hexahedron", cubes),
-        ("tets.msh", "tetra", np.concatenate([cubes[:, tet] for tet in split])),
-    ):
-        if kind == "tetra":  # the faces of neighbours agree only where there is one layer of one row: a single cube
-            cells, used = cells[np.arange(5) * len(cubes)], points
-        else:
-            used = points
-        meshio.Mesh(used, [(kind, cells)]).write(
-            tmp_path / name, **({"file_format": "gmsh22", "binary": False} if kind == "tetra" else {})
-        )
-        if kind == "tetra":
-            continue
+    ways = [
+        np.cumsum([0, *(steps[axis] for axis in order)]) for order in permutations(range(3)) for steps in [(12, 3, 1)]
+    ]
+    tets = np.concatenate([corner + way for way in ways])
+    for name, kind, cells in (("cubes.vtu", "hexahedron", cubes), ("tets.msh", "tetra", tets)):
+        how = {"file_format": "gmsh22", "binary": False} if name.endswith(".msh") else {}
+        meshio.Mesh(points, [(kind, cells)]).write(tmp_path / name, **how)
         mesh = ms.mesh.mid_surface(tmp_path / name, size=1e-3, unit="mm")
         assert mesh.origin.thickness == pytest.approx(0.5e-3, rel=1e-12)
         assert np.abs(mesh.points[:, 2] - 0.25e-3).max() < 1e-12
         assert area(mesh) == pytest.approx(12e-6, rel=1e-12)
 
 
+def on_the_boss(x, y):
+    return abs(x - 10) <= 1 and abs(y - 4) <= 1
+
+
 REFUSED = {
-    "step": (plate(thickness=lambda x, y: 1.0 if x <= 10 else 1.3), r"its thickness varies: 1(\.3)? mm at most places, 1(\.3)? mm at \(\d"),
-    "wedge": (plate(thickness=lambda x, y: 1.0 + 0.01 * x), r"its thickness varies: 1\.1 mm at most places, 1 mm at \(0\.0"),
-    "boss": (plate(thickness=lambda x, y: 2.0 if abs(x - 10) <= 1 and abs(y - 4) <= 1 else 1.0), r"varies: 1 mm at most places, 2 mm at \((9|10|11)"),
+    "step": (plate(thickness=lambda x, y: 1 + 0.3 * (x > 10)), r"varies: 1.* mm at most places, 1.* mm at \(\d"),
+    "wedge": (plate(thickness=lambda x, y: 1 + 0.01 * x), r"varies: 1\.1 mm at most places, 1 mm at \(0\.0"),
+    "boss": (plate(thickness=lambda x, y: 1.0 + on_the_boss(x, y)), r"varies: 1 mm at most places, .* mm at \(\d"),
     "rounded": (rounded_plate(), r"is more than a sheet of thickness 1 mm: its volume is .* slanted edge at \("),
     "cube": (box(1, 1, 1), "no two opposite sides can be told from each other, as at"),
     "bar": (box(20, 1, 1), "no two opposite sides can be told from each other, as at"),
@@ -214,5 +212,5 @@ def test_files_that_hold_no_solid(tmp_path):
         ms.mesh.mid_surface(tmp_path / "sheet.step")
     with pytest.raises(InputError, match=r"plate\.step says itself in which unit"):
         ms.mesh.mid_surface(DATA / "plate.step", unit="mm")
-    with pytest.raises(InputError, match="^unit: is missing"):
+    with pytest.raises(InputError, match="unit: is missing"):
         ms.mesh.mid_surface(DATA / "plate_skin.stl")

@@ -118,6 +118,7 @@ class _Pencil:
 
     def _curves(self, chain: Chain) -> list[int]:
         tags: list[int] = []
+        self._tags.clear()  # with its surface, a hole takes its points away
         for run in self._runs(chain):
             if len(run) > 1:
                 points = np.concatenate([*(piece.points[:-1] for piece in run), run[-1].points[-1:]])

@@ -174,8 +174,9 @@ def _sagittas(skin: Skin) -> FloatArray:
     angle[angle < 1e-6] = 0.0
     side = np.linalg.norm(np.roll(skin.corners, -1, axis=1) - skin.corners, axis=2)
     height = 2.0 * skin.areas[:, None] / side
-    off: FloatArray = (0.25 * angle * height).max(axis=1)
-    return off
+    off = (0.25 * angle * height).max(axis=1)
+    beside = np.where(cosine > CREASE, off[beyond], 0.0).max(axis=1)
+    return np.maximum(off, beside)
 
 
 def _median(values: FloatArray, weights: FloatArray) -> float:
