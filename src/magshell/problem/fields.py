@@ -138,6 +138,13 @@ def _levels(value: object) -> object:
     return value
 
 
+def _outline(value: object) -> object:
+    if not isinstance(value, list | tuple) or len(value) < 3:
+        has = f"has {len(value)} corners" if isinstance(value, list | tuple) else "is not a list"
+        raise InputError(f"{has}; expected three or more, each a pair of coordinates X1, X2")
+    return value
+
+
 def not_empty(value: object) -> object:
     """A list or table that must hold something."""
     if value in ([], {}, ()):
@@ -221,6 +228,9 @@ Angles = Annotated[tuple[Angle, ...], BeforeValidator(_as_list), AfterValidator(
 Positions = Annotated[tuple[Length, ...], BeforeValidator(not_empty)]
 Corner = Annotated[tuple[Length, ...], _list_of((2, 3), "coordinates X1, X2 and, out of the plane, X3")]
 Corners = Annotated[tuple[Corner, Corner, Corner, Corner], _list_of(4, "corners, one after the other")]
+
+PlaneCorner = Annotated[tuple[Length, Length], _list_of(2, "coordinates X1 and X2")]
+Outline = Annotated[tuple[PlaneCorner, ...], BeforeValidator(_outline)]
 
 
 def one_of(names: Collection[str]) -> BeforeValidator:

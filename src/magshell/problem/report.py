@@ -389,6 +389,7 @@ def _doubts(problem: Problem, figures: _Whole, strong: Strength) -> Iterator[str
         yield f"the bending load is {figures.bending_load:.2g}: the shell will hardly move; check the units"
     elif figures.bending_load > 1e5:
         yield f"the bending load is {figures.bending_load:.2g}: far beyond any experiment; check the units"
+    yield from _other_thickness(problem, figures)
     yield from region_report.doubts(problem)
     yield from remanence_report.doubts(problem)
     yield from load_report.doubts(problem, strong)
@@ -401,6 +402,19 @@ def _doubts(problem: Problem, figures: _Whole, strong: Strength) -> Iterator[str
         yield f"element {worst_corner.element} is badly shaped (scaled Jacobian {worst_corner.value:.2g})"
     if not problem.file.probes:
         yield "there are no probes: the history will hold the load only"
+
+
+def _other_thickness(problem: Problem, figures: _Whole) -> Iterator[str]:
+    """A warning if the solid that the mesh was made of is not as thick as the shell."""
+    mesh = problem.model.shell.mesh
+    if not isinstance(mesh, FileMesh) or mesh.origin.thickness is None:
+        return
+    solid = mesh.origin.thickness
+    if max(figures.thickest - solid, solid - figures.thinnest) > 0.01 * solid:
+        yield (
+            f"the solid in {mesh.origin.file} is {show(solid, LENGTH)} thick, the shell "
+            f"{show(figures.thinnest, LENGTH)}: check shell.thickness"
+        )
 
 
 def _doubts_of(part: _Figures) -> Iterator[str]:
