@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 import itertools
 import logging
+import pickle
 
 import numpy as np
 import pytest
@@ -116,6 +118,13 @@ def test_another_shell_of_the_same_has_its_own():
     assert stiff.material == (400e3, 7300e3, 400e3, 1e-5)
     given = shell(ms.MicropolarNeoHookean(303e3, 7300e3, 30e3, 1e-4), thickness=1e-3)
     assert dataclasses.replace(given, thickness=2e-3).material == (303e3, 7300e3, 30e3, 1e-4)
+
+
+def test_a_multiple_survives_copies_and_processes():
+    one = materials.Multiple("1/3", 2.0)
+    for other in (copy.deepcopy(one), pickle.loads(pickle.dumps(one))):
+        assert (other, other.factor) == (2.0, one.factor)
+    assert one.of(6.0) == 2.0
 
 
 def test_a_law_is_evaluated_without_them():

@@ -17,7 +17,7 @@ from magshell.model.stages import Stage
 from magshell.model.supports import SUPPORTS, Support
 from magshell.problem import schema
 from magshell.problem.building.located import at
-from magshell.problem.building.material import EARLIER, by_default, tell_once
+from magshell.problem.building.material import EARLIER
 from magshell.problem.building.mesh import build_mesh
 from magshell.problem.building.shell import build_shell
 from magshell.problem.schema import ProblemFile
@@ -95,8 +95,6 @@ def build(file: ProblemFile, source: str, text: str = "", folder: pathlib.Path =
             loads=loads,
             stages=_stages(file.stages),
         )
-        if (note := by_default(file)) is not None:
-            tell_once(f"{source}: {note}")
         settings = Settings(**file.solver.model_dump(exclude_none=True))
         make_solver(settings.linear_solver)
         return Problem(source, file, model, settings, text, folder)
