@@ -72,3 +72,14 @@ def test_a_state_beyond_the_limit_has_no_residual_and_is_told():
         assembly = d.assemble(Instant(state, d.model.loading(1.0)), tangent=False)
         assert np.isfinite(assembly.worst[1]) == (not told)
         assert beyond(d, state) == told
+
+
+def test_the_limit_of_a_layer():
+    """Of a layer between two of laws without one, its own levels count."""
+    neo, gent = example(ms.MicropolarNeoHookean), example(ms.MicropolarGent)
+    for layers in ([neo, gent, neo], [gent, neo]):
+        d = free_body(patch((1, 1)), layers=[ms.Layer(0.05, law) for law in layers])
+        state = homogeneous(d, np.diag([4.0, 1.0, 0.5]), np.eye(3))
+        assert beyond(d, state) == ": element 0 is stretched to 158 % of the limit of its law"
+    d = free_body(patch((1, 1)), layers=[ms.Layer(0.05, neo), ms.Layer(0.05, neo)])
+    assert beyond(d, homogeneous(d, np.diag([4.0, 1.0, 0.5]), np.eye(3))) == ""
