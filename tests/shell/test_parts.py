@@ -25,8 +25,10 @@ from parts import PARTS, jointed, layered
 
 from magshell import magnetics
 from magshell.equations.instant import Increment, Instant
+from magshell.evaluation.converged import Converged
 from magshell.shell.elements import QUADRATIC
-from shell import oracle
+from shell import jets, oracle
+from shell.point_oracle import eliminated
 from shell.test_element import reference as oracle_of_one
 from shell.test_objectivity import rotation_of, superposed, turned_matrix, turned_rows
 from shell.test_zero_modes import spectrum
@@ -53,6 +55,21 @@ def test_three_sections_meet_at_the_middle():
         middle = np.flatnonzero(np.bincount(d.mesh.elements.ravel()) == 4)
         assert np.count_nonzero(d.rows.of == middle[0]) == 3
         assert d.carried[d.rows.copies, 10].all()
+
+
+@each_body
+def test_deformation_gradients(parts, element):
+    """With the stretches of directors, and of levels in the field of the loading."""
+    d = body(parts, element, coupling=CONSERVATIVE[0])
+    state = random_state(d, 21)
+    fields = Converged(d, state, d.model.loading(1.0)).fields
+    for e in (0, len(d.mesh.elements) // 2, len(d.mesh.elements) - 1):
+        for p, (parent, weight) in enumerate(oracle.points(d, e)):
+            f, here = oracle.element_parts(d, state, e, parent, jets.variables(np.zeros(oracle.unknowns(d))))
+            point = oracle.point_of(d, here, e, p, weight, FIELD)
+            local = eliminated({name: jets.value(part) for name, part in f.items()}, CONSERVATIVE[0], point)
+            expected = [jets.value(F) for F in oracle.deformation_gradients(local.parts, point)]
+            assert np.abs(fields.F[e, p, : len(expected)] - expected).max() < 1e-12, f"element {e}, point {p}"
 
 
 # -- stresses --------------------------------------------------------------------------------------------------------
