@@ -2,6 +2,7 @@
 
     python docs/make_figures.py            some minutes, on all cores
     python docs/make_figures.py remanence  only the pictures of remanence.md and of the flower
+    python docs/make_figures.py reactions  only that of reactions.md
 
 Every number in the tables is computed here; what they are compared with is in `magshell.reproduction.references`.
 """
@@ -14,6 +15,7 @@ from collections.abc import Mapping, Sequence
 
 import example_pages
 import numpy as np
+import reaction_pictures
 import remanence_pictures
 from blocks import write_blocks
 from matplotlib.figure import Figure
@@ -46,10 +48,13 @@ Paths = Mapping[str, ms.Path]
 def main() -> None:
     """Solve, draw, write."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("only", nargs="?", choices=["remanence"], help="make only these")
+    parser.add_argument("only", nargs="?", choices=["remanence", "reactions"], help="make only these")
     only = parser.parse_args().only
     IMAGES.mkdir(exist_ok=True)
-    remanence_pictures.draw(IMAGES)
+    if only != "reactions":
+        remanence_pictures.draw(IMAGES)
+    if only != "remanence":
+        reaction_pictures.draw(IMAGES)
     if only:
         return
     files = {name: file for example in EXAMPLES for name, file in variants(example).items()}

@@ -23,7 +23,8 @@ from pydantic_core import PydanticUndefined
 
 import magshell as ms
 from magshell import keys, units
-from magshell.evaluation.outputs import OUTPUTS
+from magshell.evaluation.outputs import OUTPUTS, Output
+from magshell.evaluation.series import SERIES
 from magshell.magnetics import COUPLINGS
 from magshell.magnetics.remanence import REMANENCES
 from magshell.materials import MATERIALS, keys_of
@@ -37,6 +38,7 @@ from magshell.shell.elements import ELEMENTS
 
 PAGE = pathlib.Path(__file__).parent / "problem-file.md"
 RESULTS = pathlib.Path(__file__).parent / "pictures.md"
+REACTIONS = pathlib.Path(__file__).parent / "reactions.md"
 
 KINDS = {
     fields.Length: "length",
@@ -277,6 +279,15 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "side": "Which way along the mode.",
         },
     ),
+    "results": (
+        schema.ResultsTable,
+        {
+            "local_axis": "Its projection on the undeformed surface is the first local axis of tensors and resultants, "
+            "see [Strain and stress](stress.md#axes).",
+            "outputs": "Names of [outputs](pictures.md#what-can-be-shown) that `steps/*.vtu` and the page hold beside "
+            "the usual ones; `stress` stands for `stress_top`, `stress_middle` and `stress_bottom`.",
+        },
+    ),
     "solver": (
         schema.SolverTable,
         {
@@ -304,6 +315,7 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "supports": "What holds the shell.",
             "stages": "Parts of the load path, in sequence; left out: one, or as many as the longest history has.",
             "probes": "Nodes to follow: a name and the reference position.",
+            "results": "Axes of tensors, and what files hold beside the usual.",
             "solver": "How the path is followed.",
         },
     ),
@@ -369,6 +381,7 @@ OTHERWISE = {
         for key in ("thickness", "material", "remanence", "density", "offset", "levels")
     },
     ("layer", "density"): "that of the region",
+    ("file", "results"): "see below",
     ("file", "solver"): "see below",
 }
 EXAMPLES = {
@@ -402,20 +415,34 @@ def pages() -> dict[pathlib.Path, dict[str, str]]:
     made = {name: table(name) for name in TABLES}
     made |= {name: f"```toml\n{examples.text(problem)}```" for name, problem in EXAMPLES.items()}
     made["units"] = units_table()
-    return {PAGE: made, RESULTS: {"outputs": outputs_table()}}
+    return {PAGE: made, RESULTS: {"outputs": outputs_table()}, REACTIONS: {"series": series_table()}}
 
 
 def outputs_table() -> str:
     """What a result holds."""
-    rows = ["| Name | Symbol | Unit | Of each | What it is |", "|---|---|---|---|---|"]
+    rows = ["| Name | Symbol | Unit | Of each | In files | What it is |", "|---|---|---|---|---|---|"]
     where = {"point": "node", "patch": "node and patch", "cell": "element"}
+    families: dict[str, list[Output]] = {}
     for output in OUTPUTS.values():
+        families.setdefault(output.name.removesuffix(f"_{output.face}"), []).append(output)
+    for output, *others in families.values():
         symbols = [f"`{output.symbol}`"] if output.has_length or output.components == 1 else []
         if output.components > 1:
             numbers = range(1, output.components + 1)
             symbols += [f"`{output.of_component(output.symbol, number)}`" for number in numbers]
-        unit = output.unit or "1"
-        rows.append(f"| `{output.name}` | {', '.join(symbols)} | {unit} | {where[output.where]} | {output.sentence} |")
+        names = ", ".join(f"`{one.name}`" for one in (output, *others))
+        usual = [one.face for one in (output, *others) if one.usual]
+        files = "yes" if usual == [""] else " and ".join(usual) or "on request"
+        sentence = output.sentence.split(";")[0].rstrip(".") + "." if others else output.sentence
+        columns = (names, ", ".join(symbols), output.unit or "1", where[output.where], files, sentence)
+        rows.append(f"| {' | '.join(columns)} |")
+    return "\n".join(rows)
+
+
+def series_table() -> str:
+    """What the history holds after field, probes and what only the path knows."""
+    rows = ["| Series | Unit | What it is |", "|---|---|---|"]
+    rows += [f"| {series.name} | {series.unit or '1'} | {series.sentence} |" for series in SERIES.values()]
     return "\n".join(rows)
 
 

@@ -163,6 +163,8 @@ class Unsupported:
     coupling: object
     supports: tuple = ()
     loads: tuple = ()
+    local_axis: tuple = (1.0, 0.0, 0.0)
+    outputs: tuple = ()
 
     @cached_property
     def rows(self):

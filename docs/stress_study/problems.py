@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
@@ -11,6 +11,7 @@ import numpy as np
 import magshell as ms
 from magshell.evaluation.converged import Converged, converged
 from magshell.evaluation.outputs import find
+from magshell.evaluation.recovery import recovery_of
 from magshell.mesh import Mesh
 from magshell.model.loads.dead import DeadForces
 from magshell.model.loads.load import Load
@@ -74,7 +75,7 @@ def membrane(count: int) -> list[Value]:
     """NAFEMS LE1: an elliptic membrane under a tension of its outer edge; `count` elements along either side."""
     square = ms.mesh.rectangle(1.0, 1.0, (count, count))
     s, t = square.points[:, :2].T
-    angle, outer = 0.5 * np.pi * (1.0 - s), 1.0 - (1.0 - t) ** 1.0
+    angle, outer = 0.5 * np.pi * (1.0 - s), t
     axes = np.array([[2.0, 1.0], [3.25, 2.75]])
     a, b = (axes[0, i] + outer * (axes[1, i] - axes[0, i]) for i in (0, 1))
     points = np.stack([a * np.cos(angle), b * np.sin(angle), 0.0 * s], axis=1)
@@ -89,7 +90,7 @@ def membrane(count: int) -> list[Value]:
 
 
 def edge_traction(mesh: Mesh, edges: Any, tension: float) -> np.ndarray:
-    """Forces (nodes, 3) of a tension (N/m) normal to edges (k, 3) of a mesh in the plane X3 = 0, from the middle out."""
+    """Forces (nodes, 3) of a tension (N/m) normal to edges (k, 3) of a mesh in the plane X3 = 0, outward."""
     parent, weights = np.polynomial.legendre.leggauss(4)
     N = np.stack([parent * (parent - 1) / 2, parent * (parent + 1) / 2, 1 - parent**2], axis=1)
     dN = np.stack([parent - 0.5, parent + 0.5, -2 * parent], axis=1)
@@ -137,8 +138,8 @@ def plate(count: int, clamped: bool, ratio: float = 200.0) -> list[Value]:
     return [
         Value(name, "centre deflection", "q a⁴/D", w, 0.00406235, 1e-2),
         Value(name, "moment at the centre", "q a²", M, 0.0478864, 1e-2),
-        Value(name, "corner force 2 M12", "q a²", 2.0 * at(reached, "M12", corner) * scale, 0.0649647, 1e-2),
-        Value(name, "edge reaction Q1 + M12,2", "q a", reaction, 0.4205, 1e-2),
+        Value(name, "corner force 2 M12", "q a²", abs(2.0 * at(reached, "M12", corner)) * scale, 0.0649647, 1e-2),
+        Value(name, "edge reaction Q1 + M12,2", "q a", abs(reaction), 0.4205, 1e-2),
     ]
 
 
@@ -193,7 +194,6 @@ def pinched_cylinder(count: int) -> list[Value]:
     place = mesh.points[mesh.node_at(np.array([0.0, 0.0, radius]))]
     mesh = Mesh(mesh.points, mesh.elements, {}, dict(mesh.edge_groups), {"top": [mesh.node_at(place)]})
     shell = ms.Shell(mesh, h, classical(young, 0.3), micro_rotation=False)
-    turned = float(np.sign(mesh.points[mesh.nodes_of("angle-stop"), 1][0]))
     supports = [
         ms.SymmetryPlane("start", (1, 0, 0)),
         ms.SymmetryPlane("angle-start", (0, 1, 0)),
@@ -201,7 +201,45 @@ def pinched_cylinder(count: int) -> list[Value]:
         ms.Prescribe("end", "u", 2),
         ms.Prescribe("end", "u", 3),
     ]
-    assert turned
     reached = solved(ms.Model(shell, supports, loads=[ms.Force("top", (0.0, 0.0, -0.25))]))
-    w = -at(reached, "u3", place) * young * h
-    return [Value("pinched cylinder", "displacement under the force", "P/Eh", w, 164.5, 3e-3)]
+    w = (-at(reached, "u3", place) - shear_work(reached) / 0.25) * young * h
+    return [Value("pinched cylinder", "displacement under the force, less that of shear", "P/Eh", w, 164.5, 3e-3)]
+
+
+def shear_work(reached: Converged) -> float:
+    """Twice the energy of the transverse shear, J: what it adds to the work of a small load.
+
+    Under a point force it grows without end as the mesh is refined; theories without shear do not have it.
+    """
+    d = reached.discretisation
+    F = reached.fields.F @ np.swapaxes(recovery_of(d).points, -1, -2)[:, :, None]
+    C = np.swapaxes(F, -1, -2) @ F
+    density = d.model.shell.material.shear_modulus * (C[..., 0, 2] ** 2 + C[..., 1, 2] ** 2)
+    return float(np.sum(d.reference.geometry.volume * density))
+
+
+def simply_supported_plate(count: int) -> list[Value]:
+    """See `plate`."""
+    return plate(count, clamped=False)
+
+
+def clamped_plate(count: int) -> list[Value]:
+    """See `plate`."""
+    return plate(count, clamped=True)
+
+
+PROBLEMS: dict[str, tuple[Callable[[int], list[Value]], Sequence[int]]] = {
+    "LE1": (membrane, (4, 8, 16)),
+    "simply supported plate": (simply_supported_plate, (4, 8, 16)),
+    "clamped plate": (clamped_plate, (4, 8, 16)),
+    "clamped cylinder": (clamped_cylinder, (16, 32, 64)),
+    "roof": (roof, (4, 8, 16)),
+    "pinched cylinder": (pinched_cylinder, (8, 16, 32)),
+}
+"""The problems and the meshes of the table, of which the last keeps what is claimed."""
+
+
+def solved_problem(name: str) -> list[Value]:
+    """The values of a problem on its last mesh."""
+    solve, counts = PROBLEMS[name]
+    return solve(counts[-1])

@@ -7,6 +7,7 @@ import pytest
 from battery import (
     FIELD,
     PATCHES,
+    TRIANGULAR,
     TYPES,
     dense,
     each_element,
@@ -16,11 +17,13 @@ from battery import (
     random_state,
     scaled_error,
 )
+from parts import PARTS, jointed
 from shell import oracle
 
 from magshell.equations.instant import Instant
 from magshell.linalg import nested_dissection
 from magshell.model.supports import Clamp, Prescribe, SymmetryPlane
+from magshell.shell.elements import QUADRATIC
 
 SUPPORTS = (
     SymmetryPlane("left", (1.0, 2.0, -0.5)),
@@ -75,16 +78,27 @@ def expected(d, reference):
     return T @ r, T @ r_condensed, T @ (K + transport) @ T.T
 
 
-@pytest.fixture(scope="module", params=TYPES.values(), ids=TYPES)
+CASES = {name: (element, None) for name, element in TYPES.items()}
+CASES |= {f"{name} parts": (QUADRATIC, parts) for name, parts in PARTS.items()}
+CASES |= {
+    "parts of triangles": (TRIANGULAR, PARTS["layered"]),
+    "layered parts, paper": (TYPES["paper"], PARTS["layered"]),
+}
+
+
+@pytest.fixture(scope="module", params=CASES.values(), ids=CASES)
 def reference(request):
-    d = free_body(PATCHES["curved patch"](), element=request.param)
+    element, parts = request.param
+    mesh = PATCHES["curved patch"]()
+    d = jointed(mesh, parts, element) if parts else free_body(mesh, element=element)
     state = random_state(d, 31)
     return d, state, assembled(d, state)
 
 
 def supported(body, supports=SUPPORTS, ordering=ORDERINGS["as numbered"]):
     """The same body with supports."""
-    return free_body(body.mesh, element=body.model.shell.element, supports=supports, ordering=ordering)
+    shell = body.model.shell
+    return free_body(body.mesh, element=shell.element, regions=shell.regions, supports=supports, ordering=ordering)
 
 
 @pytest.mark.parametrize("ordering", ORDERINGS.values(), ids=ORDERINGS)

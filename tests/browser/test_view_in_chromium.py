@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import base64
 import io
 import json
 import pathlib
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,12 +17,16 @@ from rolled import FIELD, mixed, plate, rolled
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
+from solver.models import THICKNESS, rubber, strip
 
+import magshell as ms
 from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import OUTPUTS
 from magshell.output.page import shown_steps, write_page
 from magshell.output.page import steps as page_steps
+from magshell.output.solid.slab import slab_of, volume
 from magshell.output.tessellation import Tessellation
+from magshell.solver import solve
 from magshell.solver.critical import LIMIT_POINT, CriticalPoint
 from magshell.solver.path import Path
 
@@ -328,3 +334,65 @@ def test_browser_without_webgl_shows_the_curves(shared, file):
         assert shared.console() == []
     finally:
         shared.driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", script)
+
+
+def solid_of(window: Browser, step: int) -> bytes:
+    """The STL file that the page makes of a step."""
+    script = (
+        "const bytes = new Uint8Array(solidFile(arguments[0])); let text = '';"
+        "for (const byte of bytes) text += String.fromCharCode(byte); return btoa(text);"
+    )
+    return base64.b64decode(window.driver.execute_script(script, step))
+
+
+def regions() -> Path:
+    """Two materials, one thickness: their border is a step where the strip is bent, and none at rest."""
+    whole = strip((4, 2))
+    mesh = replace(whole.shell.mesh, element_groups={"far": np.array([2, 3, 6, 7])})
+    shell = replace(whole.shell, mesh=mesh, regions=[ms.Region("far", material=rubber(THICKNESS, 0.2))])
+    return solve(replace(whole, shell=shell))
+
+
+@pytest.mark.parametrize("kind", ["quadrilaterals", "triangles too", "regions"])
+def test_solid_of_a_step_is_closed(shared, path, tmp_path, kind):
+    """As exact as the page's numbers of 16 bits; its volume is that of the body that the command exports."""
+    trimesh = pytest.importorskip("trimesh")
+    if kind != "quadrilaterals":
+        path = regions() if kind == "regions" else rolled(mixed(), 3)
+    shared.open(write_page(path, tmp_path / "view.html"))
+    for number in (0, len(path.steps) // 2):  # at the last, the ends of the roll touch
+        content = solid_of(shared, number)
+        body = trimesh.load(io.BytesIO(content), file_type="stl")
+        assert body.is_watertight
+        assert body.is_winding_consistent
+        exact = volume(slab_of(converged(path.discretisation, path.steps[number])))
+        assert 1e-9 * body.volume == pytest.approx(exact, rel=2e-2 if number else 1e-3)
+    assert shared.console() == []
+
+
+def test_button_saves_the_solid(shared, path, tmp_path):
+    shared.open(write_page(path, tmp_path / "view.html", TITLE))
+    kept = (
+        "window.kept = []; HTMLAnchorElement.prototype.click = function () { kept.push([this.download, this.href]); }"
+    )
+    shared.driver.execute_script(kept)
+    shared.driver.find_element(By.ID, "stl").click()
+    ((name, address),) = shared.driver.execute_script("return kept")
+    assert name == f"{TITLE}, step {len(path.steps) - 1}.stl"
+    assert address.startswith("blob:")
+    assert shared.console() == []
+
+
+def test_other_curves_can_be_chosen(shared, tmp_path):
+    path = solve(strip())
+    shared.size(*SIZE)
+    shared.open(write_page(path, tmp_path / "view.html"))
+    names = shared.driver.execute_script("return [...document.querySelectorAll('#curve option')].map((o) => o.text)")
+    assert names == ["displacement", "reaction moment", "energy", "work", "magnetic torque"]
+    choose(shared, "curve", str(names.index("reaction moment")))
+    assert shared.driver.find_element(By.CSS_SELECTOR, "#legend li").text == "left M₂"
+    assert "reaction moment (mN mm)" in shared.driver.find_element(By.ID, "plot").text
+    moment = 1e6 * path.table()["left.M2"]
+    place = shared.driver.execute_script("return curves.py(arguments[0])", float(moment.iloc[-1]))
+    assert ring(shared)[1] == pytest.approx(place, abs=1e-6)
+    assert shared.console() == []

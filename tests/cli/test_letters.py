@@ -46,6 +46,7 @@ USES = {
     "mesh": ["mesh", "Flügel ³.msh"],
     "plot": ["plot", "Fertig é", "--steps", "1", "--out", "Bilder é"],
     "view": ["view", "Fertig é"],
+    "export": ["export", "Fertig é", "--out", "Körper é/Körper.stl"],
     "sweep": ["sweep", "Ärmchen.toml", "--set", "shell.thickness=1 mm", "--workers", "1", "--out", "Schar é"],
     "buckling": ["buckling", "Ärmchen.toml", "--modes", "1", "--out", "Beulen é"],
 }
@@ -56,6 +57,7 @@ ERRORS = {
     "sweep": ["sweep", "strip-10", "--set", "é=1", "--out", "x"],
     "mesh": ["mesh", "Fl³.msh"],
     "view": ["view", "Käse"],
+    "export": ["export", "Käse", "--out", "Körper.obj"],
     "plot": ["plot", "Käse ³"],
     "show": ["show", "Käse.toml"],
     "buckling": ["buckling", "Käse.toml", "--out", "x"],
@@ -90,7 +92,7 @@ def test_help(encoding: str, monkeypatch: pytest.MonkeyPatch) -> None:
         assert "examples:" in text
 
 
-SOLVING = {"run", "sweep", "buckling", "plot", "show", "view"}
+SOLVING = {"run", "sweep", "buckling", "plot", "show", "view", "export"}
 MEETINGS = [(use, encoding) for use in USES for encoding in (["ascii", "cp932"] if use in SOLVING else ENCODINGS)]
 
 

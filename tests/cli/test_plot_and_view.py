@@ -1,10 +1,11 @@
-"""`magshell plot` and `magshell view` of results folders: whole ones, interrupted ones, and what is none."""
+"""`magshell plot`, `view` and `export` of results folders: whole ones, interrupted ones, and what is none."""
 
 from __future__ import annotations
 
 import pathlib
 import shutil
 
+import numpy as np
 import pytest
 
 import magshell as ms
@@ -80,6 +81,15 @@ def test_plot_draws_curve_shapes_and_animation(folder, tmp_path, can_draw, capsy
         (["plot", "--steps", "last"], "'last' is not a number of a step"),
         (["plot", "--color", "u4"], "There is no output 'u4'"),
         (["view", "--color", "enrgy"], "Did you mean 'energy'?"),
+        (["plot", "--curves", "left.R4"], "Did you mean 'left.R"),
+        (
+            ["plot", "--curves", "left.R3,left.M2"],
+            "'left.R3' is in N and 'left.M2' is in N m; the curves",
+        ),
+        (["plot", "--curves", "elastic,magnetic"], "'magnetic' is empty for this problem"),
+        (["export", "--out", "body.obj"], "name it body.stl"),
+        (["export", "--out", "body.stl", "--step", "11"], "the path has steps 0 to 10"),
+        (["export", "--out", "body.stl", "--step", "last"], "is not a number of a step"),
         (["plot", "--animate", "shape.avi"], "ends in .gif"),
     ],
 )
@@ -102,3 +112,28 @@ def test_plot_without_a_way_to_draw_leaves_the_curve(folder, monkeypatch, capsys
     assert (folder / "curve.png").exists()
     assert not list(folder.glob("shape-*.png"))
     assert "libegl1" in capsys.readouterr().err
+
+
+def test_plot_draws_the_curves_that_are_named(folder, monkeypatch, capsys):
+    from magshell.output import curve
+
+    drawn = []
+    monkeypatch.setattr(curve, "deliver", lambda figure, file: drawn.append((figure, file)))
+    monkeypatch.setattr("magshell.output.animation.draw_steps", lambda *given: [])
+    assert cli.main(["plot", str(folder), "--curves", "left.M2, left.M1"]) == 0
+    ((figure, file),) = drawn
+    assert file == folder / "curve.png"
+    (axes,) = figure.axes[:1]
+    assert axes.get_ylabel() == "reaction moment (mN mm)"
+    assert axes.lines[0].get_label() == "left  $M_2$"
+    moment = results.read(folder).path.table()["left.M2"]
+    assert np.abs(axes.lines[0].get_ydata() - 1e6 * moment).max() == 0.0
+
+
+@pytest.mark.parametrize("name", ["body.stl", "body.vtu"])
+def test_export_writes_the_solid(folder, tmp_path, capsys, name):
+    assert cli.main(["export", str(folder), "--out", str(tmp_path / "new" / name), "--step", "3"]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "step 3" in said
+    assert "mm^3" in said
+    assert (tmp_path / "new" / name).stat().st_size > 1000

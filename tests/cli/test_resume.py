@@ -113,6 +113,18 @@ def test_mends_the_other_files(stopped: Path, finished: Path) -> None:
     assert contents(stopped) == contents(finished)
 
 
+@pytest.mark.usefixtures("no_pictures")
+def test_a_folder_without_reactions_gets_them(stopped: Path, finished: Path) -> None:
+    """Of a version whose history ended at `negative_pivots`: read as it is, and gone on with."""
+    rows = [line.split(",") for line in (stopped / "history.csv").read_text().splitlines()]
+    end = rows[0].index("negative_pivots") + 1
+    assert rows[0][end] == "left.R1"
+    (stopped / "history.csv").write_text("".join(",".join(row[:end]) + "\n" for row in rows))
+    assert len(ms.results.read(stopped).path.steps) == LEFT + 1
+    assert main(["run", "--resume", str(stopped)]) == 0
+    assert contents(stopped) == contents(finished)
+
+
 def test_a_finished_run_is_left_alone(finished: Path, capsys: pytest.CaptureFixture[str]) -> None:
     before = {file: file.stat().st_mtime_ns for file in finished.rglob("*") if file.name != ".lock"}
     assert main(["run", "--resume", str(finished)]) == 0

@@ -40,7 +40,7 @@ def strip(tmp_path: Path) -> str:
 
 def rows(out: Path) -> list[dict[str, float]]:
     with (out / "history.csv").open(newline="") as file:
-        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+        return [{key: float(value or "nan") for key, value in row.items()} for row in csv.DictReader(file)]
 
 
 def series(out: Path) -> list[str]:

@@ -17,6 +17,7 @@ from problem_files import BLOCKS, STRIP, changed
 import magshell as ms
 from magshell import cli
 from magshell.evaluation.outputs import OUTPUTS
+from magshell.evaluation.series import SERIES
 from magshell.keys import Key
 from magshell.magnetics import COUPLINGS
 from magshell.magnetics import law as coupling_laws
@@ -26,6 +27,7 @@ from magshell.materials import law as material_laws
 from magshell.model.loads import LOADS
 from magshell.model.supports import SUPPORTS
 from magshell.output import rendering
+from magshell.output.series import chosen
 from magshell.output.vtu import grid
 from magshell.problem.building import build
 from magshell.problem.reading import check, parse
@@ -35,7 +37,7 @@ from magshell.shell.elements import ELEMENTS
 LAYOUT = (pathlib.Path(__file__).parents[2] / "docs" / "layout.md").read_text()
 RECIPES = dict(re.findall(r"^## (Add .+?)\n(.*?)(?=^## |\Z)", LAYOUT, re.MULTILINE | re.DOTALL))
 LAWS = (material_laws.callbacks, coupling_laws.callbacks)
-REGISTRIES = (COUPLINGS, ELEMENTS, LOADS, MATERIALS, OUTPUTS, REMANENCES, SUPPORTS, *LAWS)
+REGISTRIES = (COUPLINGS, ELEMENTS, LOADS, MATERIALS, OUTPUTS, REMANENCES, SERIES, SUPPORTS, *LAWS)
 
 
 def can_draw() -> bool:
@@ -255,6 +257,16 @@ def test_a_quantity(follow: Callable, used: Callable, tmp_path: pathlib.Path) ->
     path.view(tmp_path / "view.html", color="distance")
     if CAN_DRAW:
         assert path.plot(color="s").size
+
+
+def test_a_column(follow: Callable, used: Callable, tmp_path: pathlib.Path) -> None:
+    """It is in the file, in the table's columns and among the curves."""
+    follow("Add a column to the history")
+    path = ms.solve(build(check(parse(STRIP, "test.toml"), "test.toml"), "test.toml").model)
+    assert path.history.columns[-1] == "farthest"
+    largest = np.linalg.norm(path.steps[-1].state.u, axis=1).max()
+    assert path.history.row(path.steps[-1])[-1] == pytest.approx(largest, rel=1e-14)
+    assert chosen(path, ["farthest"]).title == "farthest (mm)"
 
 
 def test_an_observer(follow: Callable, capsys: pytest.CaptureFixture[str]) -> None:

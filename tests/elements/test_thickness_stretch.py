@@ -70,6 +70,20 @@ def test_plane_stress_on_a_mesh_of_both_shapes() -> None:
     assert difference.max() < 5e-4, f"tip and energy: {difference}"
 
 
+ELIMINATED = {
+    "quadratic": (0.0009872229058285663, -5.364573092348481e-05),
+    "paper": (0.0009949436129853867, -5.452648392588009e-05),
+}
+"""u3 and u1 of the tip, m, of magshell 0.1.0, whose plane stress had φ as the variable that is eliminated."""
+
+
+@pytest.mark.parametrize("element", ELIMINATED)
+def test_two_levels_are_what_an_eliminated_phi_was(element: str) -> None:
+    """The stretches of two levels of equal height are 2 z φ."""
+    found = strip(element, "plane-stress").probe("tip")
+    assert (found.u3[-1], found.u1[-1]) == pytest.approx(ELIMINATED[element], rel=1e-10)
+
+
 @pytest.mark.parametrize("stretch", ["none", "plane-stress"])
 def test_no_node_carries_it(stretch: str) -> None:
     path = strip("quadratic", stretch)

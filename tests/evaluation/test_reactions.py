@@ -15,6 +15,7 @@ from magshell.errors import InputError
 from magshell.evaluation.converged import Converged, converged
 from magshell.linalg import make_solver
 from magshell.model.named_supports import split
+from magshell.shell.unknowns import COLUMNS, COMPONENTS
 
 SHARP = Settings(tolerance=1e-11)
 ENERGIES = [DeformationGradientEnergy(), MicroRotationEnergy()]
@@ -38,16 +39,17 @@ def potential(d, state, loading):
 
 def rigid(d, state, support, motion):
     """What a rigid motion (translation, rotation about the support's point) does to what it holds, to first order."""
-    x, normal = d.mesh.points + state.u, d.normals + state.w
+    nodes = len(d.mesh.points)
+    x, normal = d.mesh.points + state.u[:nodes], d.normals + state.w[:nodes]
     centre = support.weights @ x if support.point is None else support.point
-    increment = np.zeros((len(x), 10))
-    increment[:, :3] = motion[:3] + np.cross(motion[3:], x - centre)
-    increment[:, 3:6] = np.cross(motion[3:], normal)
-    increment[:, 7:] = motion[3:]
-    own = np.zeros(len(x), dtype=bool)
+    increment = np.zeros((len(state.u), COMPONENTS))
+    increment[:nodes, :3] = motion[:3] + np.cross(motion[3:], x - centre)
+    increment[:nodes, 3:6] = np.cross(motion[3:], normal)
+    increment[:nodes, COLUMNS["omega"]] = motion[3:]
+    own = np.zeros(len(state.u), dtype=bool)
     own[support.nodes] = True
     held = d.model.constraints.fixed & own[:, None]
-    return d.to_global(np.where(held, d.to_frames(increment), 0.0))
+    return d.rows.shared(d.to_global(np.where(held, d.to_frames(increment), 0.0)))
 
 
 def derivative(d, state, loading, increment, size):
@@ -109,6 +111,21 @@ def test_reaction_about_a_point_and_in_a_slanted_plane():
     (wall,) = (one for one in converged(path.discretisation, path.steps[-1]).reactions if one.name == "wall")
     assert np.array_equal(wall.point, point)
     assert np.linalg.norm(np.cross(wall.force, normal)) < 1e-12 * np.linalg.norm(wall.force)
+
+
+def test_reaction_of_clamps_across_a_step_of_the_thickness():
+    """Thick and thin meet at nodes of both clamps; the thin part is flush with the top of the thick one."""
+    mesh = ms.mesh.rectangle(LENGTH, WIDTH, (4, 2))
+    rows = [np.flatnonzero((mesh.points[mesh.elements].mean(axis=1)[:, 1] > WIDTH / 2) == side) for side in (0, 1)]
+    mesh = replace(mesh, element_groups={"thick": rows[0], "thin": rows[1]})
+    thin = ms.Region("thin", thickness=0.5 * THICKNESS, material=rubber(0.5 * THICKNESS), offset=-0.25 * THICKNESS)
+    shell = ms.Shell(mesh, THICKNESS, rubber(), ms.remanence.constant((143e-3, 0.0, 0.0)), regions=[thin])
+    supports = [ms.Clamp("left"), ms.Prescribe("right", "u", value=(0, 0, 1e-3)), ms.Prescribe("right", "w")]
+    field, stops = ms.UniformField((0.0, 3e-3, 10e-3)), [ms.Stage(stops=[0.25, 0.5])]
+    path = solve(Model(shell, supports, field, DeformationGradientEnergy(), stages=stops), SHARP)
+    assert len(path.steps[-1].state.u) > len(mesh.points), "rows of their own at the step"
+    check_reaction(path, "left")
+    check_reaction(path, "right")
 
 
 def test_supports_that_share_nodes_count_nothing_twice():

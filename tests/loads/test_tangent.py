@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -17,8 +17,9 @@ from loads.bodies import arm, grouped
 from magshell import Settings, solve
 from magshell.equations.discretisation import Discretisation
 from magshell.equations.instant import Instant
+from magshell.keys import Key
 from magshell.linalg import make_solver, nested_dissection
-from magshell.model.supports import Condition
+from magshell.model.supports import Condition, Support
 from magshell.shell.state import State
 from magshell.solver.newton import System, Trial, newton
 
@@ -48,8 +49,11 @@ BENT: dict[str, tuple[Callable[[Sequence[Any]], ms.Model], list[Any]]] = {
 
 
 @dataclass(frozen=True)
-class Guide:
+class Guide(Support):
     """No rotation about one axis, which is oblique."""
+
+    kind: ClassVar[str] = "guide"
+    keys: ClassVar[dict[str, Key]] = {}
 
     group: str
     axis: tuple[float, float, float]

@@ -10,9 +10,9 @@ import pytest
 
 from magshell.evaluation.converged import Converged
 from magshell.evaluation.work import Work
+from magshell.magnetics import remanence
 from magshell.magnetics.field import UniformField
 from magshell.magnetics.micropolar_couple import MicropolarCouple
-from magshell.magnetics.remanence import constant
 from magshell.materials import MicropolarNeoHookean
 from magshell.mesh import cylinder
 from magshell.model.course import Loading
@@ -22,6 +22,7 @@ from magshell.shell.state import State
 from magshell.solver.history import History
 
 RADIUS, LENGTH = 10e-3, 16e-3
+RUBBER = MicropolarNeoHookean(135e3, 3.25e6, 13.5e3, 9e-5)
 PROBES = {"tip": (LENGTH, 0, RADIUS), 'edge, "low"': (LENGTH, RADIUS, 0)}
 NOTHING = Loading(np.zeros(3), np.zeros(0), np.zeros((1, 11)))
 LOADS = (0.0, 0.1, 0.3, 0.6, 1.0)
@@ -55,6 +56,12 @@ class FakeConverged:
     def phi(self):
         return self.state.phi
 
+    def element_phi(self):
+        return self.state.phi[self.mesh.elements]
+
+    def element_stretch(self):
+        return np.zeros(self.mesh.elements.shape)
+
     def rotation(self):
         return 2 * self.state.q[:, 1:]
 
@@ -73,6 +80,7 @@ class FakeConverged:
 
     reactions = ()
     magnetic_torque = (0.0, 0.0, 1e-6)
+    acting = "known"
 
     def work_from(self, before):
         return Work(1e-6, 2e-6)
@@ -96,7 +104,7 @@ def formulas(monkeypatch):
 class FakePath:
     """A path of formula states with the members that output reads."""
 
-    def __init__(self, loads=LOADS, probes=PROBES, field=(0.0, 0.0, 20e-3)):
+    def __init__(self, loads=LOADS, probes=PROBES, field=(0.0, 0.0, 20e-3), material=RUBBER, remanent=80e-3):
         mesh = cylinder(RADIUS, LENGTH, elements=(8, 6), angle=(0, 90), axis=(1, 0, 0), zero=(0, 1, 0))
         half = len(mesh.elements) // 2
         groups = {"lower": np.arange(half), "größer": np.arange(half, len(mesh.elements))}
@@ -104,7 +112,7 @@ class FakePath:
         self.model = SimpleNamespace(
             field=UniformField(field),
             coupling=MicropolarCouple(),
-            shell=Shell(mesh, 0.9e-3, MicropolarNeoHookean(135e3, 3.25e6, 13.5e3, 9e-5), constant([0.0, 0.0, 80e-3])),
+            shell=Shell(mesh, 0.9e-3, material, remanence.constant((0.0, 0.0, remanent))),
             outputs=("stress", "membrane_force"),
             named_supports=(),
             stages=[SimpleNamespace(branch=None)] * 3,
@@ -126,8 +134,7 @@ class FakePath:
         u = np.stack([-0.4 * LENGTH * s**3 * bend, 0.05 * X[:, 1] * s, LENGTH * s**2 * (0.8 + 20 * X[:, 2])], axis=1)
         q = np.zeros((len(u), 4))
         q[:, 0], q[:, 2] = np.cos(bend * s / 2), -np.sin(bend * s / 2)
-        phi = -0.3 * s * bend / RADIUS
-        state = State(u=u * bend, w=6 * u * bend, phi=phi, q=q, s=np.zeros(len(u)), alpha=np.zeros((len(X), 0, 3)))
+        state = State(u * bend, 6 * u * bend, -0.3 * s * bend / RADIUS, q, np.zeros(len(u)), np.zeros((0, 0, 3)))
         return SimpleNamespace(
             number=number, load_factor=load, state=state, flux_density=load * self.model.field.vector,
             stage=0, arc_length=2.0 * load, negative_pivots=int(load == 0.6), loads=np.zeros(0),

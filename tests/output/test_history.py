@@ -26,6 +26,9 @@ def test_history_holds_field_and_probes_exactly(path, tmp_path):
     heading, rows = read(tmp_path / "history.csv")
     probes = [f"{name}.u{i}" for name in ("tip", 'edge, "low"') for i in (1, 2, 3)]
     series = ["elastic", "magnetic", "work", "work_field", "torque1", "torque2", "torque3"]
+    names = ("von_mises", "principal_stress", "principal_strain")
+    series += [f"max_{name}" for name in names]
+    series += [f"max_{name}.{what}" for name in names for what in ("node", "element", "face")]
     assert heading == ["load_factor", "B1", "B2", "B3", *probes, "stage", "arc_length", "negative_pivots", *series]
     loads = np.array([step.load_factor for step in path.steps])
     expected = [loads, *np.outer([0.0, 0.0, 20e-3], loads)]
@@ -36,6 +39,10 @@ def test_history_holds_field_and_probes_exactly(path, tmp_path):
     number = np.arange(len(loads))
     expected += [1e-6 * np.abs(u).sum(axis=(1, 2, 3)), np.full(len(loads), np.nan), 1e-6 * number, 2e-6 * number]
     expected += list(np.outer([0.0, 0.0, 1e-6], np.ones(len(loads))))
+    sizes = np.array([np.linalg.norm(step.state.u, axis=1) for step in path.steps])
+    node = sizes.argmax(axis=1)
+    element = [int(np.argmax((path.discretisation.mesh.elements == one).any(axis=1))) for one in node]
+    expected += 3 * [2e3 * sizes.max(axis=1)] + 3 * [node, element, np.ones(len(loads))]
     np.testing.assert_array_equal(rows[:, :13], np.transpose(expected[:13]))
     np.testing.assert_allclose(rows[:, 13:], np.transpose(expected[13:]), rtol=1e-14)
 

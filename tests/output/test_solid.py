@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from solver.models import LENGTH, THICKNESS, WIDTH, rubber, strip
@@ -81,6 +83,47 @@ def test_faces_have_the_thickness_stretch(bent):
     for side, z in ((0, -h / 2), (1, h / 2)):
         x = mesh.points + step.state.u + (z + z**2 * reached.phi())[:, None] * reached.director()
         assert np.abs(body.faces[side] - x[mesh.elements]).max() < 1e-15
+
+
+def stepped():
+    """A strip whose far half is thinner and flush with the bottom of the near one, in two materials."""
+    mesh = ms.mesh.rectangle(LENGTH, WIDTH, (4, 2))
+    far = np.flatnonzero(mesh.points[mesh.elements].mean(axis=1)[:, 0] > LENGTH / 2)
+    mesh = replace(mesh, element_groups={"far": far})
+    thin = ms.Region("far", thickness=0.5 * THICKNESS, material=rubber(0.6 * THICKNESS, 0.2), offset=0.25 * THICKNESS)
+    shell = ms.Shell(mesh, THICKNESS, rubber(), ms.remanence.constant((143e-3, 0.0, 0.0)), regions=[thin])
+    return ms.solve(ms.Model(shell, [ms.Clamp("left")], ms.UniformField((0.0, 0.0, 10e-3))))
+
+
+def test_body_of_two_regions_is_closed_at_their_border(tmp_path):
+    """At rest flush below; bent, each side has its own stretch of the thickness."""
+    path = stepped()
+    for step in (0, -1):
+        written = write_solid(path, tmp_path / "body.stl", step)
+        solid = trimesh.load(tmp_path / "body.stl")
+        assert solid.is_watertight
+        assert solid.is_winding_consistent
+        assert 1e-9 * solid.volume == pytest.approx(written.volume, rel=1e-6)
+        if step == 0:
+            assert written.volume == pytest.approx(0.75 * LENGTH * WIDTH * THICKNESS, rel=1e-12)
+            below = solid.vertices[solid.vertices[:, 2] < -0.4e3 * THICKNESS]
+            assert np.ptp(below[:, 0]) == pytest.approx(1e3 * LENGTH, rel=1e-6)
+    assert np.abs(converged(path.discretisation, path.steps[-1]).element_stretch()).max() > 1e-3
+
+
+def test_risers_too_low_for_the_numbers_of_the_file_are_left_out(tmp_path):
+    """Two materials in a weak field: their thicknesses differ by less than single precision tells."""
+    whole = strip((4, 2), field=(0.0, 0.0, 1e-7))
+    mesh = replace(whole.shell.mesh, element_groups={"far": np.array([2, 3, 6, 7])})
+    shell = replace(whole.shell, mesh=mesh, regions=[ms.Region("far", material=rubber(THICKNESS, 0.2))])
+    path = ms.solve(replace(whole, shell=shell))
+    body = slab_of(converged(path.discretisation, path.steps[-1]))
+    risers = len(closed_surface(body).triangles)
+    written = write_solid(path, tmp_path / "body.stl")
+    solid = trimesh.load(tmp_path / "body.stl")
+    assert len(solid.faces) == written.cells < risers
+    assert solid.is_watertight
+    assert solid.is_winding_consistent
 
 
 @pytest.mark.parametrize("pieces", [1, 2, 3, 5])

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import sys
 
 import numpy as np
 import pytest
 import pyvista
 
 import magshell as ms
+from magshell.errors import InputError
 from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import OUTPUTS, chosen
 from magshell.output.history import HistoryWriter
@@ -133,3 +135,28 @@ def test_pictures_of_the_strip(results, can_draw):
     assert draw_pictures(path, directory) == [directory / "curve.png", directory / "shape.png"]
     shown = path.plot(color="u3")
     assert shown._repr_png_().startswith(b"\x89PNG"), "a notebook shows it"
+
+
+def test_table_has_the_columns_of_the_history(results):
+    pandas = pytest.importorskip("pandas")
+    path, directory = results
+    table = path.table()
+    pandas.testing.assert_frame_equal(table, pandas.read_csv(directory / "history.csv"), check_exact=True)
+    assert table["stage"].dtype.kind == "i"
+    assert table["left.M2"].iloc[-1] == converged(path.discretisation, path.steps[-1]).reactions[0].moment[1]
+
+
+def test_table_without_pandas_says_what_to_install(results, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(InputError, match=r'pip install "magshell\[pandas\]"'):
+        results[0].table()
+
+
+def test_summary_has_reactions_and_energies(results):
+    path, _ = results
+    last, summary = converged(path.discretisation, path.steps[-1]), path.summary
+    (reaction,) = last.reactions
+    assert summary["reactions"] == {"left": {"force": reaction.force.tolist(), "moment": reaction.moment.tolist()}}
+    assert summary["elastic"] == last.energies[:, 0].sum()
+    assert summary["magnetic"] is None
+    assert summary["magnetic_torque"] == path.steps[-1].balance.magnetic_torque.tolist()

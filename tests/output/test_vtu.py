@@ -172,5 +172,5 @@ def test_outputs_beside_the_usual_ones_are_chosen_by_name_or_for_all_faces():
     assert [output.name for output in chosen(())] == usual
     more = {output.name for output in chosen(["stress", "energy_density"])} - set(usual)
     assert more == {"stress_top", "stress_middle", "stress_bottom", "energy_density"}
-    with pytest.raises(InputError, match=r"outputs: there is no output 'strss'. Did you mean 'stress'"):
+    with pytest.raises(InputError, match=r"There is no output 'strss'. Did you mean 'stress'"):
         chosen(["strss"])

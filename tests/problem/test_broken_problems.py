@@ -157,6 +157,9 @@ BROKEN = [
     Broken("angle that goes back", '["0 deg", "90 deg"]', '["90 deg", "0 deg"]', "mesh", ("angle",), PUMP),
     Broken("angle in mm", '"90 deg"', '"90 mm"', "mesh.angle[1]", ("length", "angle"), PUMP),
     Broken("axis of zero length", "angle =", "axis = [0, 0, 0]\nangle =", "mesh.axis", ("zero vector",), PUMP),
+    # results
+    Broken("unknown output", "[probes]", '[results]\noutputs = ["stress", "strss"]\n[probes]', "results.outputs", ("'strss'", "Did you mean 'stress'")),
+    Broken("axis without direction", "[probes]", "[results]\nlocal_axis = [0, 0, 0]\n[probes]", "results.local_axis", ("zero vector",)),
     # solver
     Broken("unknown linear solver", "[probes]", '[solver]\nlinear_solver = "superlou"\n[probes]', "solver", ("'superlou'", "'superlu'")),
     Broken("negative tolerance", "[probes]", "[solver]\ntolerance = -1e-9\n[probes]", "solver.tolerance", ("not positive",)),

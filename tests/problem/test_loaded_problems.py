@@ -83,7 +83,7 @@ def test_history_without_a_field_holds_zeros(tmp_path: Path, capsys: pytest.Capt
     with (tmp_path / "out" / "history.csv").open(newline="") as file:
         heading, *rows = csv.reader(file)
     assert heading[:4] == ["load_factor", "B1", "B2", "B3"]
-    values = np.array(rows, dtype=float)
+    values = np.array([[number or "nan" for number in row] for row in rows], dtype=float)
     assert not np.any(values[:, 1:4])
     assert values[-1, 0] == 1.0
     assert values[-1, heading.index("tip.u3")] > 1e-3

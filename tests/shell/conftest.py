@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import pytest
+from magnetics import reference as coupling_reference
 
 from magshell.magnetics import law as coupling_laws
 from magshell.materials import law as material_laws
+from shell import nonlinear_coupling
 
 
 @pytest.fixture
@@ -19,3 +21,12 @@ def registry():
         callbacks.update(before)
     coupling_laws._conservative.clear()
     coupling_laws._conservative.update(conservative)
+
+
+@pytest.fixture
+def nonlinear(registry, monkeypatch):
+    """A coupling law that is not linear in m and n."""
+    law = nonlinear_coupling.Nonlinear
+    coupling_laws.coupling_law(nonlinear_coupling.law, has_energy=True)(law)
+    monkeypatch.setitem(coupling_reference.ENERGIES, law, nonlinear_coupling.energy)
+    return law()

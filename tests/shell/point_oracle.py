@@ -203,8 +203,9 @@ def stretches(values, coupling, point):
         energy, (g, H) = strain_energy(f, point), magnetic_work(coupling, f, point)
         K = np.block([[energy.hessian + H, heights[:, None]], [heights, np.zeros(1)]])
         step = np.linalg.solve(K, -np.append(energy.gradient + g, heights @ ζ))[:count]
-        ζ = ζ + step * min(1.0, 0.2 / np.abs(step).max())
-        if np.abs(step).max() < 1e-14:
+        largest = np.abs(step).max()
+        ζ = ζ + step * 0.2 / max(largest, 0.2)
+        if largest < 1e-13:
             return ζ
     raise AssertionError(f"no equilibrium across the thickness: {ζ}")
 
@@ -218,8 +219,8 @@ def eliminated(values, coupling, point, extra=None):
     ζ = stretches(values, coupling, point) if point.section.by_level else np.zeros(0)
     at = jets.variables(np.concatenate([x, ζ]))
     f = of_flat(at[: len(x)], values)
-    if len(ζ):
-        f["zeta"] = at[len(x) :]
+    if len(ζ):  # in place of φ
+        f["zeta"], f["phi"] = at[len(x) :], 0.0 * f["phi"]
     energy, (g, H) = strain_energy(f, point), magnetic_work(coupling, f, point)
     H, geometric = H + energy.hessian, g + energy.gradient
     if extra is not None:

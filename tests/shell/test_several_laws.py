@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
-import numba
 import numpy as np
 import pytest
 from battery import (
@@ -21,7 +18,6 @@ from battery import (
     scaled_error,
     strain_energy,
 )
-from magnetics import reference as coupling_reference
 
 from magshell.equations.insertion import Insertion
 from magshell.equations.instant import STATIC, Instant
@@ -29,12 +25,11 @@ from magshell.equations.numbering import Numbering
 from magshell.equations.shell import ShellTerm
 from magshell.magnetics import DeformationGradientEnergy, MicroRotationEnergy
 from magshell.magnetics import law as coupling_laws
-from magshell.magnetics.law import OMEGA, M, coupling_law
 from magshell.materials import MicropolarMooneyRivlin, MicropolarStVenantKirchhoff
 from magshell.model.reference import make_of, stiffest_of
 from magshell.shell.body import Surface, reference_of
 from magshell.shell.geometry import Sections
-from shell import jets, oracle, point_oracle
+from shell import jets, nonlinear_coupling, oracle, point_oracle
 from shell.kernel_access import energy_gradient_and_hessian, unpack
 from shell.test_element import TOLERANCE, reference
 from shell.test_point import random_point, the_point
@@ -57,20 +52,22 @@ def evaluated(d, make, state, elements=slice(None)):
 def surface_of(d, elements=slice(None)):
     """The mid-surface of some elements of a body without regions."""
     nodes, shell = d.mesh.elements[elements], d.model.shell
-    stretched = np.zeros(len(nodes), dtype=bool)
+    stretched = np.zeros(nodes.shape, dtype=bool)
     return Surface(nodes, stretched, d.mesh.points[nodes], d.normals[nodes], shell.element, shell.micro_rotation)
 
 
 def of_element(d, make, e):
     """What one element is made of, with no other law in the lists."""
     material, coupling = make.materials[make.material_of[e, 0]], make.couplings[make.coupling_of[e, 0]]
+    _, weights = d.model.shell.element.integration(d.mesh.points[d.mesh.elements[e : e + 1]])
+    own = np.s_[e : e + 1, : weights.shape[-1]]  # a triangle by itself has fewer points
     return make._replace(
         thickness=make.thickness[e : e + 1],
-        sections=Sections(make.sections.z[e : e + 1], make.sections.heights[e : e + 1]),
+        sections=Sections(make.sections.z[own], make.sections.heights[own]),
         levels=make.levels[e : e + 1],
         by_level=make.by_level[e : e + 1],
-        warping=make.warping[e : e + 1],
-        remanence=make.remanence[e : e + 1],
+        warping=make.warping[own],
+        remanence=make.remanence[own],
         materials=[material],
         couplings=[coupling],
         material_of=np.zeros((1, make.material_of.shape[1]), dtype=np.int64),
@@ -157,48 +154,6 @@ def test_levels_of_different_laws_add_up():
 # -- a coupling law that is not linear in m and n --------------------------------------------------------------------
 
 
-class Nonlinear(NamedTuple):
-    """Energy -s/mu0 + α s²/2 + β (m·n) r of s = m·B and r = n·B: all four blocks of the tangent are full."""
-
-    vacuum_permeability: float = 0.8
-    alpha: float = 0.7
-    beta: float = -0.9
-
-
-def energy(law, m, n, B):
-    return -(m @ B) / law.vacuum_permeability + 0.5 * law.alpha * (m @ B) ** 2 + law.beta * (m @ n) * (n @ B)
-
-
-@numba.extending.register_jitable
-def _cross(a):
-    """[a]×."""
-    return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
-
-
-def _nonlinear(law, m, n, B, gradients, forces, tangent):
-    s, r, t = np.dot(m, B), np.dot(n, B), np.dot(m, n)
-    p = law.beta * (r * m + t * B)
-    forces[M : M + 3] += (law.alpha * s - 1.0 / law.vacuum_permeability) * B + law.beta * r * n
-    forces[OMEGA : OMEGA + 3] += np.cross(n, p)
-    turn, p_n = _cross(n), np.dot(p, n)
-    K_mω = -law.beta * (np.outer(n, B) + r * np.eye(3)) @ turn
-    K_nn = law.beta * (np.outer(m, B) + np.outer(B, m))
-    tangent[M : M + 3, M : M + 3] += law.alpha * np.outer(B, B)
-    tangent[M : M + 3, OMEGA : OMEGA + 3] += K_mω
-    tangent[OMEGA : OMEGA + 3, M : M + 3] += K_mω.T
-    tangent[OMEGA : OMEGA + 3, OMEGA : OMEGA + 3] += (
-        turn.T @ K_nn @ turn + 0.5 * (np.outer(p, n) + np.outer(n, p)) - p_n * np.eye(3)
-    )
-    return 0.5 * law.alpha * s**2 - s / law.vacuum_permeability + law.beta * t * r
-
-
-@pytest.fixture
-def nonlinear(registry, monkeypatch):
-    coupling_law(_nonlinear, has_energy=True)(Nonlinear)
-    monkeypatch.setitem(coupling_reference.ENERGIES, Nonlinear, energy)
-    return Nonlinear()
-
-
 def test_point_of_a_nonlinear_coupling(nonlinear):
     d = free_body(SINGLES["curved"](), coupling=nonlinear)
     for seed in range(4):
@@ -247,6 +202,8 @@ def test_magnetic_energy_of_elements(nonlinear):
             R = jets.value(oracle.rotation(f["q"]))
             levels = zip(oracle.deformation_gradients(f, point), point.volume, point.section.remanence, strict=True)
             for F, volume, vector in levels:
-                expected[e] += volume * energy(nonlinear, jets.value(F) @ vector, R @ vector, point.B)
+                expected[e] += volume * nonlinear_coupling.energy(
+                    nonlinear, jets.value(F) @ vector, R @ vector, point.B
+                )
     assert scaled_error(d.shell.energy(Instant(state, loading))[:, 1], expected) < 1e-12
     assert coupling_laws.is_conservative(nonlinear)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -52,6 +53,16 @@ def arm(
     material = ms.MicropolarNeoHookean(135e3, 3.25e6, 13.5e3, 9e-5)
     shell = ms.Shell(mesh, 0.9e-3, material, ms.remanence.meridional(94e-3), element, stretch)
     return Model(shell, [ms.Clamp("top")], ms.UniformField([0, 0, field], stops), **options)
+
+
+def in_parts(model: Model) -> Model:
+    """A third thicker and flush, a third of two layers of which one is stiff and one magnetised."""
+    shell = model.shell
+    _, second, third = np.array_split(np.arange(len(shell.mesh.elements)), 3)
+    stiff = ms.MicropolarMooneyRivlin(400e3, 2e6, 40e3, 9e-5)
+    layers = [ms.Layer(0.2e-3, stiff), ms.Layer(0.5e-3, shell.material, shell.remanence)]
+    regions = [ms.Region(second, 1.1e-3, offset=0.1e-3), ms.Region(third, layers=layers)]
+    return replace(model, shell=replace(shell, regions=regions))
 
 
 def contents(state: State) -> bytes:

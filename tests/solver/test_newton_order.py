@@ -23,7 +23,7 @@ from magshell.shell.elements import ELEMENTS
 from magshell.shell.state import State
 from magshell.solver.constraints import Constraint, Metric, ProbeValue, Sphere
 from magshell.solver.newton import System, Trial, newton
-from solver.models import arm, central_difference, equation_numbers, strip
+from solver.models import arm, central_difference, equation_numbers, in_parts, strip
 
 BEGIN = 0.2
 SHARP = 1e-13
@@ -35,10 +35,15 @@ class Case(NamedTuple):
     coupling: type
     element: str = "quadratic"
     stretch: str = "linear"
+    parts: bool = False
 
     @property
     def model(self) -> ms.Model:
-        return arm(coupling=self.coupling(), element=self.element, stretch=self.stretch)
+        model = arm(coupling=self.coupling(), element=self.element, stretch=self.stretch)
+        return in_parts(model) if self.parts else model
+
+    def __str__(self) -> str:
+        return f"{self.element}-{self.coupling.__name__}" + self.parts * "-parts"
 
 
 CASES = [*(Case(law) for law in laws()), *(Case(laws()[0], element) for element in ELEMENTS if element != "quadratic")]
@@ -77,7 +82,7 @@ def errors(case: Case, mixed: bool, ε: float) -> np.ndarray:
     return np.array([np.linalg.norm(state.u - solution.u) for state in iterates[:3]])
 
 
-@pytest.mark.parametrize("case", CASES, ids=[f"{case.element}-{case.coupling.__name__}" for case in CASES])
+@pytest.mark.parametrize("case", CASES, ids=map(str, CASES))
 def test_mixed_tangent_has_orders_1_2_4(case: Case) -> None:
     sizes = [0.01, 0.005, 0.0025]
     found = [errors(case, True, size) for size in sizes]
@@ -85,6 +90,17 @@ def test_mixed_tangent_has_orders_1_2_4(case: Case) -> None:
         orders = np.log2(large / small)
         # the next term of each expansion is smaller by a factor of the relative size of the increment
         assert orders == pytest.approx([1, 2, 4], abs=2 * ε), f"ε = {ε}: {orders}, errors {small}"
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("mixed", [True, False], ids=["mixed", "plain"])
+@pytest.mark.parametrize("case", [Case(law, parts=True) for law in laws()], ids=str)
+def test_orders_with_layers_and_jumps(case: Case, mixed: bool) -> None:
+    """Fourth order shows for smaller increments: the parts are thin, and of different stiffness."""
+    large, small = (errors(case, mixed, ε) for ε in (0.0025, 0.00125))
+    orders = np.log2(large / small)
+    assert orders == pytest.approx([1, 2, 4], abs=0.15), f"{orders}, errors {small}"
+    assert orders[:2] == pytest.approx([1, 2], abs=0.005), f"{orders}, errors {small}"
 
 
 @pytest.mark.parametrize("stretch", ["linear", "none", "plane-stress"])

@@ -14,7 +14,7 @@ from magshell.solver import resume
 from magshell.solver.retracing import path_through
 from magshell.solver.waypoint import Waypoint
 from solver.arches import arch, to_the_crown_at
-from solver.models import Record, strip
+from solver.models import Record, arm, in_parts, strip
 from solver.test_branching import along, buckling
 from solver.test_stages import strip as heavy_strip
 
@@ -33,6 +33,7 @@ CASES = {
     "arc-length": (lambda: built_in("magnetic-arch", (4, 1)), Settings()),
     "stages": (lambda: heavy_strip(gravity=(1, 1), history=(0, 1)), Settings()),
     "branches": (lambda: buckling([Stage(), along(1), along(-1)]), Settings()),
+    "parts of several layers": (lambda: in_parts(arm()), Settings()),
 }
 
 

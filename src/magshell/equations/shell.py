@@ -25,6 +25,9 @@ from magshell.shell.unknowns import COLUMNS, COMPONENTS
 ROUND_OFF = 8.0 * np.finfo(float).eps
 # Elements whose matrices are made before they are inserted: they stay in the processor's cache.
 BATCH = 32
+# Steps and weights of differences: exact for what is linear, and of fourth order.
+FORWARD = ((1.0, 1.0), (0.0, -1.0))
+CENTRAL = tuple((k / 64.0, 64.0 * weight / 12.0) for k, weight in ((-2, 1.0), (-1, -8.0), (1, 8.0), (2, -1.0)))
 
 
 class ShellTerm:
@@ -119,20 +122,19 @@ class ShellTerm:
         return self._filled.energy.copy()
 
     def load_rate(self, instant: Instant, rate: Loading) -> FloatArray:
-        """See `Term`. Residuals are linear in the flux density."""
+        """See `Term`. Residuals are linear in the flux density, unless levels have stretches that follow it."""
         if not np.any(rate.flux_density):
             return np.zeros((self._nodes, COMPONENTS))
-        loading = instant.loading
-        ahead = loading._replace(flux_density=loading.flux_density + rate.flux_density)
-        after, now = (
-            self.evaluate(Instant(instant.state, one), STATIC, None, None).residual for one in (ahead, loading)
-        )
-        return np.asarray(after - now)
+        loading, change = instant.loading, np.zeros((self._nodes, COMPONENTS))
+        for step, weight in CENTRAL if self.body.points["by_level"].any() else FORWARD:
+            there = loading._replace(flux_density=loading.flux_density + step * rate.flux_density)
+            change += weight * self.evaluate(Instant(instant.state, there), STATIC, None, None).residual
+        return change
 
     def predict(self, instant: Instant, increment: Increment) -> Prediction:
         """See `Term`."""
         shape = self.body.levels.shape
-        stresses = loops.Stresses(np.empty((*shape, 3, 3)), np.empty((*shape[:2], 2, 3)))
+        stresses = loops.Stresses(np.zeros((*shape, 3, 3)), np.zeros((*shape[:2], 2, 3)))
         loops.predict_stresses(
             self.body, instant.state, instant.loading.flux_density, increment.nodal, increment.alpha, stresses
         )

@@ -85,9 +85,9 @@ class Converged:
         """The nodal forces that do work."""
         return acting(self.discretisation, self.state, self.loading, self.assembly.residual, self.support_forces)
 
-    def work_from(self, before: Converged) -> Work:
+    def work_from(self, before: Acting) -> Work:
         """The work from another state on the path to this one, by the trapezoidal rule."""
-        return work_between(before.acting, self.acting)
+        return work_between(before, self.acting)
 
     @cached_property
     def fields(self) -> PointFields:

@@ -1,8 +1,9 @@
 """From the integration points of an element to its nodes.
 
 A function of the parent coordinates is fitted to the values at the points, with the weights of the rule: a + bξ + cη +
-dξη on quadrilaterals, a linear one on triangles. Through the points of the default rules it passes. Derivatives of the
-displacement are best there (Barlow, Int. J. Numer. Methods Engrg. 10, 1976), so what is extrapolated is of second order.
+dξη on quadrilaterals, a linear one on triangles. It passes through the points of the default rules. Derivatives of the
+displacement are best there (Barlow, Int. J. Numer. Methods Engrg. 10, 1976), so what is extrapolated is of second
+order.
 """
 
 from __future__ import annotations

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -41,24 +42,52 @@ def maxima(converged: Converged) -> dict[str, Largest]:
     patches = patches_of(converged.discretisation.model.shell)
     found = {}
     for name in QUANTITIES:
-        values = np.stack([converged.at_face(name, face) for face in FACES])
-        values = values[..., 0] if values.ndim == 3 else values
-        face, row = np.unravel_index(np.argmax(values), values.shape)
+        both = np.stack([converged.at_face(name, face) for face in FACES])
+        both = both[..., 0] if both.ndim == 3 else both
+        face, row = np.unravel_index(np.argmax(both), both.shape)
         node = int(patches.nodes[row])
         place = converged.mesh.points[node]
-        found[name] = Largest(float(values[face, row]), list(FACES)[face], node, int(patches.first[row]), place)
+        found[name] = Largest(float(both[face, row]), list(FACES)[face], node, int(patches.first[row]), place)
     return found
 
 
-def columns() -> list[str]:
-    """Names of what `numbers` gives: value, node and face (1: upper, -1: lower) of each quantity."""
-    return [f"{name}.{what}" for name in QUANTITIES for what in ("max", "node", "face")]
+PLACES = ("node", "element", "face")
 
 
-def numbers(converged: Converged) -> list[float | None]:
-    """The maxima for a table, a number for each column."""
-    return [
-        number
-        for largest in maxima(converged).values()
-        for number in (largest.value, largest.node, FACES[largest.face])
-    ]
+def values(converged: Converged, names: Sequence[str]) -> list[float | None]:
+    """The largest values of some quantities, for a table."""
+    found = maxima(converged)
+    return [found[name].value for name in names]
+
+
+def places(converged: Converged) -> list[float | None]:
+    """Where all of them are: node, element and number of the face of each, for a table."""
+    found = maxima(converged).values()
+    return [number for one in found for number in (one.node, one.element, FACES[one.face])]
+
+
+def value_column(name: str) -> str:
+    """The column of a largest value."""
+    return f"max_{name}"
+
+
+def place_columns() -> list[str]:
+    """The columns of the places."""
+    return [f"{value_column(name)}.{what}" for name in QUANTITIES for what in PLACES]
+
+
+def described(numbers: Mapping[str, float | None], points: FloatArray) -> dict[str, Any]:
+    """The maxima of a row of the table, in words: `numbers` by their columns, `points` (nodes, 3) of the mesh."""
+    faces = {number: face for face, number in FACES.items()}
+    told = {}
+    for name in QUANTITIES:
+        column = value_column(name)
+        node, element, face = (int(numbers[f"{column}.{what}"] or 0) for what in PLACES)
+        told[name] = {
+            "value": numbers[column],
+            "face": faces[face],
+            "node": node,
+            "element": element,
+            "position": points[node].tolist(),
+        }
+    return told

@@ -1,8 +1,8 @@
 """Linear fields through the means of elements and their neighbours: of the transverse shear.
 
-In the coordinates ξ of the element's own tangents at its centre, the slope of the mean v is the least-squares solution of
-v_f - v_e = slope · (ξ_f - ξ_e) over the elements f that share a node of the same patch. Across a strip of one element
-there is nothing to fit, and no slope.
+In the coordinates ξ of the element's own tangents at its centre, the slope of the mean v is the least-squares solution
+of v_f - v_e = slope · (ξ_f - ξ_e) over the elements f that share a node of the same patch. Across a strip of one
+element there is nothing to fit, and no slope.
 """
 
 from __future__ import annotations

@@ -306,7 +306,7 @@ OUTPUTS: dict[str, Output] = {
 """The quantities, by name, in the order of the files."""
 
 
-def find(name: str) -> tuple[Output, int | None]:
+def find(name: str, whole: bool = False) -> tuple[Output, int | None]:
     """Look an output up by what a user calls it.
 
     Parameters
@@ -314,6 +314,8 @@ def find(name: str) -> tuple[Output, int | None]:
     name : str
         Name or symbol of an output, or either with the suffix of a component: "displacement", "u", "u3",
         "stress11_top", "s11_top".
+    whole : bool
+        Whether a tensor may stand without its component; colours need one.
 
     Returns
     -------
@@ -336,7 +338,7 @@ def find(name: str) -> tuple[Output, int | None]:
     if name not in known:
         raise InputError(f"There is no output '{name}' to show. {suggest(name, known)}")
     output, component = known[name]
-    if component is None and output.components > 1 and not output.has_length:
+    if component is None and output.components > 1 and not (output.has_length or whole):
         own = ", ".join(output.of_component(output.symbol, i) for i in range(1, output.components + 1))
         raise InputError(f"Output '{name}' has several components to show; name one of {own}")
     return output, component
@@ -361,6 +363,6 @@ def chosen(names: Sequence[str]) -> list[Output]:
             families.setdefault(word, set()).add(output.name)
     for name in names:
         if name not in families:
-            raise InputError(f"outputs: there is no output '{name}'. {suggest(name, families)}")
+            raise InputError(f"There is no output '{name}'. {suggest(name, families)}")
     asked = {member for name in names for member in families[name]}
     return [output for output in OUTPUTS.values() if output.usual or output.name in asked]

@@ -109,7 +109,7 @@ def _smooth(elements: IntArray, normals: FloatArray, rows: IntArray, remanence: 
 
 
 def _rows_of_side(rows: IntArray, side: IntArray) -> IntArray:
-    """Rows of the nodal arrays at the ends of sides (n, 2), the lower first: sections that are the same have the same."""
+    """Rows of the nodal arrays at the ends of sides (n, 2), the lower first: equal sections have the same."""
     return np.sort(np.take_along_axis(rows[side // 4], SIDES[side % 4, :2], axis=1), axis=1)
 
 

@@ -211,7 +211,7 @@ def magnetic_torque(reference: Reference, fields: PointFields, forces: FloatArra
 
 def level_stretch(reference: Reference, state: State, flux_density: FloatArray) -> FloatArray | None:
     """Stretches ζ (elements, p, k) that the kernels eliminate; None: no element has them."""
-    if not reference.body.points["by_level"].any():
+    if reference.body.by_level is None:
         return None
     zeta = np.zeros(reference.body.levels.shape)
     loops.level_stretches(reference.body, state, flux_density, zeta)

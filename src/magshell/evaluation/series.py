@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from magshell.evaluation import maxima
 from magshell.evaluation.converged import Converged
 from magshell.magnetics.law import is_conservative
 from magshell.model.model import Model
@@ -32,6 +33,8 @@ class Series:
         From the model to the names of the columns.
     evaluate : callable
         From what has converged to as many numbers; None where there is none, which stays empty.
+    curves : bool
+        Whether they make curves.
     """
 
     name: str
@@ -39,6 +42,7 @@ class Series:
     sentence: str
     columns: Callable[[Model], Sequence[str]]
     evaluate: Callable[[Converged], Sequence[Number]]
+    curves: bool = True
 
 
 def _of_supports(letter: str) -> Callable[[Model], Sequence[str]]:
@@ -49,6 +53,16 @@ def _magnetic(converged: Converged) -> Number:
     if not is_conservative(converged.discretisation.model.coupling):
         return None
     return float(converged.energies[:, MAGNETIC].sum())
+
+
+def _largest(name: str, unit: str, sentence: str, quantities: Sequence[str]) -> Series:
+    return Series(
+        name,
+        unit,
+        f"{sentence} over the nodes and both faces.",
+        lambda model: [maxima.value_column(quantity) for quantity in quantities],
+        lambda converged: maxima.values(converged, quantities),
+    )
 
 
 SERIES: dict[str, Series] = {
@@ -71,7 +85,7 @@ SERIES: dict[str, Series] = {
         Series(
             "energy",
             "J",
-            "Elastic energy of the shell, and magnetic energy where the coupling law has one.",
+            "Elastic energy of the shell (`elastic`), magnetic energy where the coupling law has one (`magnetic`).",
             lambda model: ["elastic", "magnetic"],
             lambda converged: [float(converged.energies[:, INTERNAL].sum()), _magnetic(converged)],
         ),
@@ -86,9 +100,19 @@ SERIES: dict[str, Series] = {
         Series(
             "magnetic torque",
             "N m",
-            "Total torque of the field on the shell.",
+            "Total torque of the field on the shell: `torque1`, `torque2`, `torque3`.",
             lambda model: ["torque1", "torque2", "torque3"],
             lambda converged: [float(number) for number in converged.magnetic_torque],
+        ),
+        _largest("largest stress", "Pa", "Largest von Mises and principal stress", ("von_mises", "principal_stress")),
+        _largest("largest strain", "", "Largest principal logarithmic strain", ("principal_strain",)),
+        Series(
+            "places of the largest",
+            "",
+            "Node, element and face (1: upper, -1: lower) of these.",
+            lambda model: maxima.place_columns(),
+            maxima.places,
+            curves=False,
         ),
     )
 }

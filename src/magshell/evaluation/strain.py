@@ -1,8 +1,8 @@
 """Strain and stress at the faces of the shell and in its middle, at the nodes.
 
-F = R U is split at the points, at the height of the face. What goes to the nodes is the logarithm H = ln U and two small
-rotations, of F against the micro-rotation and of the axes of the deformed mid-surface against F: they are objective,
-and whatever is extrapolated det F = exp(tr H) is positive. The stress is that of the law at the node. With
+F = R U is split at the points, at the height of the face. What goes to the nodes is the logarithm H = ln U and two
+small rotations, of F against the micro-rotation and of the axes of the deformed mid-surface against F: they are
+objective, and whatever is extrapolated det F = exp(tr H) is positive. The stress is that of the law at the node. With
 Ũ = R̃ᵀR exp(H) and P = ∂W/∂Ũ it is
 
     σ = J⁻¹ R̃ P Ũᵀ R̃ᵀ        (Cauchy).

@@ -98,7 +98,8 @@ def rows_of(shell: Shell) -> Rows:
 
 class _Section(NamedTuple):
     layered: bool
-    materials: tuple[Any, ...]
+    laws: tuple[type, ...]
+    parameters: tuple[tuple[float, ...], ...]
 
 
 def _sections(shell: Shell) -> tuple[IntArray, FloatArray]:
@@ -108,7 +109,8 @@ def _sections(shell: Shell) -> tuple[IntArray, FloatArray]:
     kind, measures = np.zeros((count, rest), dtype=np.int64), np.zeros((count, rest, most + 1))
     known: dict[_Section, int] = {}
     for part in shell.parts:
-        section = _Section(part.layered, tuple(layer.material for layer in part.layers))
+        materials = [layer.material for layer in part.layers]
+        section = _Section(part.layered, tuple(map(type, materials)), tuple(map(tuple, materials)))
         kind[part.elements] = known.setdefault(section, len(known))
         measures[part.elements, :, : len(part.layers)] = part.at_nodes[:, :rest]
         measures[part.elements, :, most] = part.offset_at_nodes[:, :rest]

@@ -51,9 +51,9 @@ class Curve(NamedTuple):
         """For matplotlib, with mathematics."""
         if self.symbol == "|u|":
             return f"{self.name} $|u|$"
-        symbol = self.symbol.replace("_", " ")
+        symbol = self.symbol
         if self.component is not None:
-            letter = symbol if len(symbol) == 1 else rf"\mathrm{{{symbol}}}"
+            letter = symbol if len(symbol) == 1 else r"\mathrm{" + symbol.replace("_", r"\_") + "}"
             symbol = f"${letter}_{self.component}$"
         return f"{_literal(self.name)}  {symbol}".strip()
 
@@ -91,7 +91,7 @@ def groups(path: Path) -> list[Group]:
     """All series of the history that have something to show: no empty columns, and no round-off."""
     numbers = _numbers(path)
     found = []
-    for series in SERIES.values():
+    for series in (one for one in SERIES.values() if one.curves):
         columns = {name: numbers[name] for name in series.columns(path.model)}
         known = {name: values for name, values in columns.items() if np.isfinite(values).all()}
         largest = max((float(np.abs(values).max()) for values in known.values()), default=0.0)

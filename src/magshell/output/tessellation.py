@@ -89,12 +89,13 @@ class Tessellation:
         return self._sampled([values[lattice.nodes] for lattice in self.lattices], values.shape[1:])
 
     def at_corners(self, values: FloatArray) -> FloatArray:
-        """Values at the nodes of each element, shape (elements, 8) or (elements, 8, k), at the points of the surface."""
+        """Values at the nodes of each element, (elements, 8) or (elements, 8, k), at the points of the surface."""
         own = [values[lattice.elements][:, lattice.slots] for lattice in self.lattices]
         return self._sampled(own, values.shape[2:])
 
     def _sampled(self, own: Sequence[FloatArray], shape: tuple[int, ...]) -> FloatArray:
-        sampled = [np.einsum("mn,en...->em...", lattice.N, values) for lattice, values in zip(self.lattices, own)]
+        pairs = zip(self.lattices, own, strict=True)
+        sampled = [np.einsum("mn,en...->em...", lattice.N, values) for lattice, values in pairs]
         return np.concatenate([part.reshape(-1, *shape) for part in sampled])
 
     def on_elements(self, values: AnyArray) -> AnyArray:

@@ -13,7 +13,7 @@ from magshell.problem.building import Problem
 
 FOLDER = "inputs"
 # What the path does not depend on, or may change on the way.
-FREE = ("title", "description", "solver")
+FREE = ("title", "description", "results", "solver")
 
 
 def alone(problem: Problem) -> tuple[str, dict[str, bytes]]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
+from magshell.evaluation.outputs import chosen
 from magshell.materials import own_keys
 from magshell.mesh.files import FileMesh
 from magshell.mesh.geometry import centres, unit
@@ -147,6 +148,7 @@ def describe(problem: Problem) -> Report:
             "Supports": list(_supports(problem, figures)),
             **({"Stages": list(_stages(problem))} if len(problem.model.stages) > 1 or problem.file.stages else {}),
             "Probes": list(_probes(problem, figures.extent)),
+            **({"Results": list(_results(problem))} if problem.file.results.model_fields_set else {}),
         },
         warnings=list(_doubts(problem, figures, strong)),
     )
@@ -355,6 +357,13 @@ def _probes(problem: Problem, extent: float) -> Iterator[tuple[str, str]]:
     points = problem.model.shell.mesh.points
     for name, node in problem.model.probe_nodes.items():
         yield name, f"node {node} at ({', '.join(_coordinate(x, extent) for x in points[node])})"
+
+
+def _results(problem: Problem) -> Iterator[tuple[str, str]]:
+    table = problem.file.results
+    yield "local axis", f"({', '.join(f'{number:g}' for number in table.local_axis)}), projected on the surface"
+    more = [output.name for output in chosen(table.outputs) if not output.usual or output.name in table.outputs]
+    yield "outputs beside the usual", ", ".join(more) or "none"
 
 
 def _coordinate(value: float, extent: float) -> str:

@@ -107,6 +107,7 @@ def reference_of(surface: Surface, make: Make) -> Reference:
     body = Body(
         elements=np.ascontiguousarray(surface.elements),
         normals=np.ascontiguousarray(surface.normals),
+        by_level=np.ascontiguousarray(make.by_level) if make.by_level.any() else None,
         stretched=surface.stretched,
         layout=layout,
         points=points,

@@ -31,23 +31,27 @@ class Laws(NamedTuple):
 
 
 @inline
-def stress(w: Record, D: FloatArray, level: Record, laws: Laws) -> float:
-    """Fill P and C of w.U; returns the strain energy per volume. A law that raises an error leaves NaN."""
+def stress(w: Record, D: FloatArray, level: Record, laws: Laws, across: FloatArray | None) -> float:
+    """Fill P and C of w.U; returns the strain energy per volume. A law that raises an error leaves NaN.
+
+    `across` is None where no section has layers.
+    """
     w.memory_after[0] = np.nan
     parameters, address = laws.material_parameters[level.material], laws.materials[level.material]
-    if level.warping != 0.0:
-        for i in range(3):
-            for j in range(3):
-                w.U_law[i, j] = w.U[i, j]
-        _warp(w.U_law.reshape(9), 0, 3, 1, D, level.warping, w.shear)
-        energy: float = call(address, parameters, w.U_law, w.memory, 0.0, 0.0, w.P, w.C, w.memory_after)
-        _warp(w.P.reshape(9), 0, 3, 1, D, level.warping, w.shear)
-        for fixed in range(9):
-            _warp(w.C, fixed, 27, 9, D, level.warping, w.shear)
-        for fixed in range(9):
-            _warp(w.C, 9 * fixed, 3, 1, D, level.warping, w.shear)
-    else:
-        energy = call(address, parameters, w.U, w.memory, 0.0, 0.0, w.P, w.C, w.memory_after)
+    for i in range(3):
+        for j in range(3):
+            w.U_law[i, j] = w.U[i, j]
+    if across is not None:
+        if level.warping != 0.0:
+            _warp(w.U_law.reshape(9), 0, 3, 1, D, level.warping, w.shear)
+    energy: float = call(address, parameters, w.U_law, w.memory, 0.0, 0.0, w.P, w.C, w.memory_after)
+    if across is not None:
+        if level.warping != 0.0:
+            _warp(w.P.reshape(9), 0, 3, 1, D, level.warping, w.shear)
+            for fixed in range(9):
+                _warp(w.C, fixed, 27, 9, D, level.warping, w.shear)
+            for fixed in range(9):
+                _warp(w.C, 9 * fixed, 3, 1, D, level.warping, w.shear)
     w.P[0, 0] += w.memory_after[0]
     return energy + w.memory_after[0]
 

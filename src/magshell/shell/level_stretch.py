@@ -23,8 +23,10 @@ The place of φ in H serves each level in turn for its ζ_k.
 
 from __future__ import annotations
 
+import numpy as np
+
 from magshell.arrays import AnyArray, FloatArray
-from magshell.compiled import inline
+from magshell.compiled import allocate, inline
 from magshell.magnetics.law import OMEGA, M
 from magshell.shell.kinematics import base_vectors, stretch
 from magshell.shell.level import Laws, carry, stress, work
@@ -34,8 +36,16 @@ from magshell.shell.rotation import LAST, NEXT
 STEPS = 30
 # Stretches: round-off, and the most that one step may change.
 ROUND_OFF, LARGEST = 1e-13, 0.3
-# Rows of the scratch array; a fourth is for who needs one more.
-ZETA, FORCE, STIFFNESS = 0, 1, 2
+# Rows of the scratch array (4, levels); the last is of a state from which ζ is predicted.
+ZETA, FORCE, STIFFNESS, OWN = 0, 1, 2, 3
+
+
+@allocate
+def level_scratch(by_level: AnyArray | None, levels: int) -> FloatArray | None:
+    """The scratch array; None where no section stretches level by level: then nothing of this file is compiled."""
+    if by_level is None:
+        return None
+    return np.zeros((4, levels))
 
 
 @inline
@@ -54,7 +64,7 @@ def solve_level_stretch(
     for _ in range(STEPS):
         force, compliance = 0.0, 0.0
         for k in range(len(levels)):
-            f, s = force_and_stiffness(w, point, levels[k], laws, B, zeta[k])
+            f, s = force_and_stiffness(w, point, levels[k], laws, B, zeta[k], across)
             if not s > 0.0:
                 return False
             force += levels[k].height * f / s
@@ -74,21 +84,19 @@ def solve_level_stretch(
 
 @inline
 def force_and_stiffness(
-    w: Record, point: Record, level: Record, laws: Laws, B: FloatArray, zeta: float
+    w: Record, point: Record, level: Record, laws: Laws, B: FloatArray, zeta: float, across: FloatArray
 ) -> tuple[float, float]:
     """Force on ζ of a level and its derivative, with the base vectors, P and C there; 0 where it is inside out."""
     base_vectors(point, level.z, zeta, w.x, w.base)
     if not stretch(w.R, w.base, level.G, w.U) > 0.0:
         return 0.0, 0.0
-    stress(w, point.D, level, laws)
+    stress(w, point.D, level, laws, across)
     _leg(w, point, level.G)
-    f, s = 0.0, 0.0
-    for p in range(3):
-        for j in range(3):
-            f += w.P[p, j] * w.leg[p, j]
-            for q in range(3):
-                for l in range(3):
-                    s += w.leg[p, j] * w.C[27 * p + 9 * j + 3 * q + l] * w.leg[q, l]
+    f, s, P, leg, C = 0.0, 0.0, w.P.reshape(9), w.leg, w.C
+    for a in range(9):
+        f += P[a] * leg[a]
+        for b in range(9):
+            s += leg[a] * C[9 * a + b] * leg[b]
     carry(w, level.G, level.remanence)
     if w.b[2] != 0.0:
         work(w, laws, level.coupling, B)
@@ -108,7 +116,7 @@ def _leg(w: Record, point: Record, G: FloatArray) -> None:
         for i in range(3):
             e += w.R[i, p] * (point.D[i] + w.x[W + i])
         for j in range(3):
-            w.leg[p, j] = e * G[2, j]
+            w.leg[3 * p + j] = e * G[2, j]
 
 
 @inline
@@ -127,7 +135,10 @@ def predict_level_stretch(levels: AnyArray, across: FloatArray) -> None:
 @inline
 def force_rate(w: Record, point: Record, level: Record, ω: FloatArray) -> float:
     """How the force on ζ grows along w.dU, w.dx and the spin ω at fixed ζ; P, C and the coupling's parts are there."""
-    f, x, dx = 0.0, w.x, w.dx
+    f, x, dx, dU, leg, C = 0.0, w.x, w.dx, w.dU.reshape(9), w.leg, w.C
+    for a in range(9):
+        for b in range(9):
+            f += leg[a] * C[9 * a + b] * dU[b]
     for p in range(3):
         e = 0.0
         for i in range(3):
@@ -136,9 +147,6 @@ def force_rate(w: Record, point: Record, level: Record, ω: FloatArray) -> float
             e += w.R[i, p] * (dx[W + i] - turned)
         for j in range(3):
             f += w.P[p, j] * e * level.G[2, j]
-            for q in range(3):
-                for l in range(3):
-                    f += w.leg[p, j] * w.C[27 * p + 9 * j + 3 * q + l] * w.dU[q, l]
     if w.b[2] != 0.0:
         for i in range(3):
             f += w.b[2] * w.forces[M + i] * dx[W + i]

@@ -32,7 +32,7 @@ from magshell.shell.element import (
     transpose,
 )
 from magshell.shell.level import Laws
-from magshell.shell.level_stretch import ZETA, solve_level_stretch
+from magshell.shell.level_stretch import ZETA, level_scratch, solve_level_stretch
 from magshell.shell.point import INTERNAL, MAGNETIC, PADDED, SIZE, Q, workspace
 from magshell.shell.rotation import LAST, NEXT, rotation_matrix
 from magshell.shell.section import Request, predicted_stress, section
@@ -48,6 +48,8 @@ class Body(NamedTuple):
         Rows of the nodal arrays.
     normals : ndarray, shape (elements, 8, 3)
         Directors of the undeformed shell at the nodes.
+    by_level : ndarray of bool, shape (elements,), or None
+        Whether the levels of an element stretch each by itself; None: no element's do.
     stretched : ndarray of bool, shape (elements, 8)
         Which of its nodes carry a stretch of the director.
     layout : Layout
@@ -62,6 +64,7 @@ class Body(NamedTuple):
 
     elements: IntArray
     normals: FloatArray
+    by_level: AnyArray | None
     stretched: AnyArray
     layout: Layout
     points: AnyArray
@@ -142,7 +145,7 @@ def fill(
     r_sum, factor = np.zeros(size), np.zeros((3 * modes, 3 * modes + nodal + 1))
     records = workspace()
     w = records[0]
-    across = np.zeros((4, body.levels.shape[2]))
+    across = level_scratch(body.by_level, body.levels.shape[2])
     for e in range(first, min(first + len(out.K), len(body.elements))):
         nodes, Kt, r = body.elements[e], out.K[e - first], out.r[0, e]
         gather(nodes, state, state.alpha[e], layout, v)
@@ -237,7 +240,7 @@ def predict_stresses(
     modes, rest, at = layout.modes, layout.q, layout.at_q
     full = layout.nodal + rest + 3 * modes
     v, dv, spins = np.zeros(full), np.zeros(full), np.zeros(layout.nodal)
-    T, records, across = np.zeros((rest, 4, 3)), workspace(), np.zeros((4, body.levels.shape[2]))
+    T, records, across = np.zeros((rest, 4, 3)), workspace(), level_scratch(body.by_level, body.levels.shape[2])
     w = records[0]
     for e in range(len(body.elements)):
         nodes = body.elements[e]
@@ -268,7 +271,10 @@ def predict_stresses(
 
 @Kernel
 def level_stretches(body: Body, state: State, flux_density: FloatArray, zeta: FloatArray) -> None:
-    """Fill the stretch ζ (e, p, k) that each level has of its own (`level_stretch.py`); zero where φ is a field."""
+    """Fill the stretch ζ (e, p, k) that each level has of its own (`level_stretch.py`); zero where φ is a field.
+
+    NaN where there is none in equilibrium.
+    """
     layout = body.layout
     v, records = np.zeros(layout.nodal + layout.q + 3 * layout.modes), workspace()
     w, across = records[0], np.zeros((4, body.levels.shape[2]))

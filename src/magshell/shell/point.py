@@ -80,7 +80,7 @@ WORKSPACE = np.dtype(
         ("dg3", float, (3,)),
         ("t3", float, (3,)),
         ("spin", float, (3,)),
-        ("leg", float, (3, 3)),
+        ("leg", float, (9,)),
         ("shear", float, (3,)),
         ("row", float, (Q + 3,)),
         ("column", float, (Q + 3,)),

@@ -39,6 +39,7 @@ from magshell.shell.kinematics import base_vectors, moduli_on_legs, stress_vecto
 from magshell.shell.level import Laws, carry, stress, work
 from magshell.shell.level_stretch import (
     FORCE,
+    OWN,
     STIFFNESS,
     ZETA,
     constrain_levels,
@@ -194,32 +195,38 @@ def section(
     request: Request,
     S_mixed: FloatArray,
     kappa_mixed: FloatArray,
-    across: FloatArray,
+    across: FloatArray | None,
 ) -> float:
     """Gradient and Hessian of a point that sees w.x; returns the least det F through the thickness.
 
     Fills the internal and the magnetic column of w.g; with a tangent also w.H, and the column of w.g that is the whole
     gradient which the geometric part is made with. Sets w.energy, elastic and magnetic. A point with det F <= 0, or
-    whose levels have no equilibrium (0), leaves them unfinished. `across` (4, levels) is scratch.
+    whose levels have no equilibrium (0), leaves them unfinished. `across` (4, levels) is scratch; None where no section
+    stretches level by level.
     """
     x, g, V, base, t, b, dg3, couples = w.x, w.g, w.V, w.base, w.t, w.b, w.dg3, w.couples
-    forces, tangent, by_level, c = w.forces, request.tangent, point.by_level != 0, 0.0
+    forces, tangent, by_level, c = w.forces, request.tangent, False, 0.0
     _clear(w, tangent)
     n2 = rotation_matrix(x[Q : Q + 4], w.R)
     spin_map(x[Q : Q + 4], n2, V)
-    if by_level and not solve_level_stretch(w, point, levels, laws, request.flux_density, across):
-        return 0.0
+    if across is not None:
+        by_level = point.by_level != 0
+        if by_level and not solve_level_stretch(w, point, levels, laws, request.flux_density, across):
+            return 0.0
     least = np.inf
     for k in range(len(levels)):
         z, volume, G = levels[k].z, levels[k].volume, levels[k].G
-        zeta, scale = (across[ZETA, k], 1.0) if by_level else (0.0, 2.0 * z)
+        zeta, scale = 0.0, 2.0 * z
+        if across is not None:
+            if by_level:
+                zeta, scale = across[ZETA, k], 1.0
         s = 1.0 + 2.0 * z * x[PHI] + zeta
         base_vectors(point, z, zeta, x, base)
         J = stretch(w.R, base, G, w.U)
         least = min(least, J)
         if not J > 0.0:
             return J
-        w.energy[INTERNAL] += volume * stress(w, point.D, levels[k], laws)
+        w.energy[INTERNAL] += volume * stress(w, point.D, levels[k], laws, across)
         stress_vectors(w.R, w.P, G, volume, t)
         carry(w, G, levels[k].remanence)
         for i in range(3):
@@ -244,12 +251,14 @@ def section(
                 for l in range(3):
                     w.H_ωω[i, l] += volume * w.work_tangent[OMEGA + i, OMEGA + l]
             _scatter_level(w, z, s, scale, volume)
-            if by_level:
-                c += eliminate_level(w, levels[k].height)
-    if by_level:
-        g[PHI, INTERNAL], g[PHI, MAGNETIC] = 0.0, 0.0
-        if tangent:
-            constrain_levels(w, c)
+            if across is not None:
+                if by_level:
+                    c += eliminate_level(w, levels[k].height)
+    if across is not None:
+        if by_level:
+            g[PHI, INTERNAL], g[PHI, MAGNETIC] = 0.0, 0.0
+            if tangent:
+                constrain_levels(w, c)
     for i in range(3):
         couples[MIXED, i] += couples[MAGNETIC, i]
     for r in range(4):
@@ -293,32 +302,37 @@ def predicted_stress(
     flux_density: FloatArray,
     S_mixed: FloatArray,
     kappa_mixed: FloatArray,
-    across: FloatArray,
+    across: FloatArray | None,
 ) -> None:
     """Fill S' = U⁻¹ (P + C : ΔU - ΔU S) (levels, 3, 3), κ' = κ + Δκ (2, 3), linear in the increment w.dx (31,).
 
-    `across` (4, levels) is scratch.
+    `across` (4, levels) is scratch; None where no section stretches level by level.
     """
     x, dx, S, C, P, dU, dP = w.x, w.dx, w.S, w.C, w.P, w.dU, w.dP
-    q, dq, ω, zeta, by_level = x[Q : Q + 4], dx[Q : Q + 4], w.spin, across[3], point.by_level != 0
+    q, dq, ω, by_level = x[Q : Q + 4], dx[Q : Q + 4], w.spin, False
     n2 = rotation_matrix(q, w.R)
     spin_map(q, n2, w.V)
     for i in range(3):
         ω[i] = 2.0 * (w.V[i, 0] * dq[0] + w.V[i, 1] * dq[1] + w.V[i, 2] * dq[2] + w.V[i, 3] * dq[3])
-    if by_level:
-        solve_level_stretch(w, point, levels, laws, flux_density, across)
-        for k in range(len(levels)):
-            zeta[k] = across[ZETA, k]
-            _, across[STIFFNESS, k] = force_and_stiffness(w, point, levels[k], laws, flux_density, zeta[k])
-            _increments(w, point, levels[k], zeta[k], 0.0)
-            across[FORCE, k] = force_rate(w, point, levels[k], ω)
-            across[ZETA, k] = 0.0
-        predict_level_stretch(levels, across)
+    if across is not None:
+        by_level = point.by_level != 0
+        if by_level:
+            solve_level_stretch(w, point, levels, laws, flux_density, across)
+            for k in range(len(levels)):
+                zeta = across[ZETA, k]
+                _, across[STIFFNESS, k] = force_and_stiffness(w, point, levels[k], laws, flux_density, zeta, across)
+                _increments(w, point, levels[k], zeta, 0.0)
+                across[FORCE, k] = force_rate(w, point, levels[k], ω)
+                across[OWN, k], across[ZETA, k] = zeta, 0.0
+            predict_level_stretch(levels, across)
     for k in range(len(levels)):
-        own, change = (zeta[k], across[ZETA, k]) if by_level else (0.0, 0.0)
+        own, change = 0.0, 0.0
+        if across is not None:
+            if by_level:
+                own, change = across[OWN, k], across[ZETA, k]
         base_vectors(point, levels[k].z, own, x, w.base)
         stretch(w.R, w.base, levels[k].G, w.U)
-        stress(w, point.D, levels[k], laws)
+        stress(w, point.D, levels[k], laws, across)
         _increments(w, point, levels[k], own, change)
         _second_stress(w, S)
         for i in range(3):

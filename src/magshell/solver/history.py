@@ -8,7 +8,7 @@ from itertools import pairwise
 from magshell.equations.discretisation import Discretisation
 from magshell.evaluation.converged import Converged, Reached, converged
 from magshell.evaluation.series import Number, columns, evaluated
-from magshell.evaluation.work import Work, no_work
+from magshell.evaluation.work import Acting, Work, no_work
 from magshell.solver.critical import CriticalPoint
 from magshell.solver.step import Step
 
@@ -21,16 +21,21 @@ class History:
     Parameters
     ----------
     discretisation : Discretisation
-    critical_points : sequence of CriticalPoint
+    steps, critical_points : sequence of Step, sequence of CriticalPoint
         Of the path, which may grow.
     """
 
-    def __init__(self, discretisation: Discretisation, critical_points: Sequence[CriticalPoint] = ()) -> None:
-        self._discretisation, self._critical_points = discretisation, critical_points
+    def __init__(
+        self,
+        discretisation: Discretisation,
+        steps: Sequence[Step] = (),
+        critical_points: Sequence[CriticalPoint] = (),
+    ) -> None:
+        self._discretisation, self._path, self._critical_points = discretisation, steps, critical_points
         self._steps: list[Step] = []
         self._rows: list[list[Number]] = []
         self._work: list[Work] = []
-        self._last: Converged | None = None
+        self._last: Acting | None = None
 
     @property
     def columns(self) -> list[str]:
@@ -42,11 +47,12 @@ class History:
     def row(self, step: Step) -> list[Number]:
         """Numbers of a step, in the order of the columns; None where there is none.
 
-        Steps are asked for in their order; what was asked for before is kept.
+        Those of the steps before it are evaluated first, as work is summed; what was asked for is kept.
         """
-        if step.number >= len(self._rows):
-            self._steps.append(step)
-            self._rows.append(self._evaluated(step))
+        for one in [*self._path[len(self._rows) : step.number], step]:
+            if one.number == len(self._rows):
+                self._steps.append(one)
+                self._rows.append(self._evaluated(one))
         return self._rows[step.number]
 
     def rows(self, steps: Sequence[Step]) -> list[list[Number]]:
@@ -58,14 +64,14 @@ class History:
         before, work = self._before(step)
         reached.work = work if before is None else work.plus(reached.work_from(before))
         self._work.append(reached.work)
-        self._last = reached
+        self._last = reached.acting
         u = [step.state.u[node].tolist() for node in self._discretisation.model.probe_nodes.values()]
         of_path = [step.stage + 1, float(step.arc_length), step.negative_pivots]
         head = [float(step.load_factor), *map(float, step.flux_density), *(number for one in u for number in one)]
         return [*head, *of_path, *evaluated(reached)]
 
-    def _before(self, step: Step) -> tuple[Converged | None, Work]:
-        """The state on the path before a step, and the work up to there."""
+    def _before(self, step: Step) -> tuple[Acting | None, Work]:
+        """What acts at the state on the path before a step, and the work up to there."""
         if self._last is None:
             return None, no_work(self._discretisation)
         last = self._steps[-2]
@@ -74,7 +80,7 @@ class History:
             return self._last, self._work[-1]
         return self._at(self._critical_points[stage.branch - 1])
 
-    def _at(self, point: CriticalPoint) -> tuple[Converged, Work]:
+    def _at(self, point: CriticalPoint) -> tuple[Acting, Work]:
         """A critical point, where a branch starts, and the work on the way to it."""
         number = next(
             one.number
@@ -82,7 +88,7 @@ class History:
             if after.stage == point.stage and one.arc_length <= point.arc_length <= after.arc_length
         )
         there = self._converged(point)
-        return there, self._work[number].plus(there.work_from(self._converged(self._steps[number])))
+        return there.acting, self._work[number].plus(there.work_from(self._converged(self._steps[number]).acting))
 
     def _converged(self, reached: Reached) -> Converged:
         return converged(self._discretisation, reached)

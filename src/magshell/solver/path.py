@@ -9,11 +9,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from magshell.arrays import FloatArray
+from magshell.arrays import AnyArray, FloatArray
 from magshell.drawing import drawing
 from magshell.equations.discretisation import Discretisation
 from magshell.errors import InputError, suggest
 from magshell.evaluation.balance import largest_imbalances
+from magshell.evaluation.converged import converged
+from magshell.evaluation.maxima import described
+from magshell.evaluation.outputs import find
 from magshell.model.course import Course, Loading
 from magshell.model.model import Model
 from magshell.solver.critical import CriticalPoint
@@ -121,7 +124,7 @@ class Path:
     @cached_property
     def history(self) -> History:
         """The rows of `history.csv`, step by step."""
-        return History(self.discretisation, self.critical_points)
+        return History(self.discretisation, self.steps, self.critical_points)
 
     def table(self) -> Any:
         """The history as a pandas frame: a row for each converged step, the columns of `history.csv`.
@@ -137,6 +140,34 @@ class Path:
             pandas is not installed; the message says how to install it.
         """
         return drawing("table")(self)
+
+    def values(self, name: str, step: int = -1) -> AnyArray:
+        """An output at a step, in SI.
+
+        Parameters
+        ----------
+        name : str
+            A name or symbol of `magshell.evaluation.outputs`, or either with the suffix of a component: "u3",
+            "von_mises_top", "stress_top", "s11_top".
+        step : int
+            Which converged step; negative counts from the last.
+
+        Returns
+        -------
+        ndarray, shape (rows,) or (rows, components)
+            A row for each node or element. What may jump, such as stresses, has further rows after those of the nodes
+            where the shell has borders (`magshell.evaluation.patches`).
+
+        Raises
+        ------
+        InputError
+            No such output or step.
+        """
+        output, component = find(name, whole=True)
+        if not -len(self.steps) <= step < len(self.steps):
+            raise InputError(f"There is no step {step}; the path has steps 0 to {len(self.steps) - 1}.")
+        values = np.array(output.evaluate(converged(self.discretisation, self.steps[step])))
+        return values if component is None else values[:, component - 1]
 
     def loading(self, step: Step) -> Loading:
         """What acts on the shell at a step."""
@@ -184,7 +215,7 @@ class Path:
         }
 
     def _reached(self, last: Step) -> dict[str, Any]:
-        """Reactions, energies, work and torque at the last step, for the summary."""
+        """Reactions, energies, work, torque and the largest stresses at the last step, for the summary."""
         self.history.rows(self.steps)
         numbers = dict(zip(self.history.columns, self.history.row(last), strict=True))
         kinds = {"force": "R", "moment": "M"}
@@ -197,6 +228,7 @@ class Path:
             },
             **{name: numbers[name] for name in ("elastic", "magnetic", "work", "work_field")},
             "magnetic_torque": [numbers[f"torque{i}"] for i in (1, 2, 3)],
+            "largest": described(numbers, self.model.shell.mesh.points),
         }
 
     def save(self, file: str | PathLike[str]) -> None:

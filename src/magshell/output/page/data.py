@@ -14,6 +14,7 @@ from magshell.evaluation.patches import patches_of
 from magshell.output.curve import LOAD_TEXT, abscissa, displacements, load_per_mT
 from magshell.output.labels import plain, shown_unit
 from magshell.output.page.arrays import quantised, span, text
+from magshell.output.page.solid import solid
 from magshell.output.page.stencils import stencils
 from magshell.output.rounding import without_round_off
 from magshell.output.scene import best_axes
@@ -59,7 +60,8 @@ def collect(path: Path, steps: Sequence[Step], color: str, advance: Callable[[fl
     first, component = find(color)
     shown = page_outputs(path, first)
     kinds, arrays = stencils(path.model.shell)
-    arrays |= {
+    body, arrays_of_body = solid(path, steps)
+    arrays |= arrays_of_body | {
         "points": text(mesh.points[patches.nodes], "<f4"),
         "sequential": text(_colours("viridis"), "u1"),
         "diverging": text(_colours("coolwarm"), "u1"),
@@ -74,6 +76,7 @@ def collect(path: Path, steps: Sequence[Step], color: str, advance: Callable[[fl
         "outputs": outputs,
         "colour": f"{first.name} {_column(first, component)}",
         "mesh": kinds,
+        "solid": body,
         "edges": len(mesh.elements) <= MOST_ELEMENTS_WITH_EDGES,
         "hull": _hull(path, steps).tolist(),
         "view": _view(path),

@@ -21,7 +21,7 @@ from magshell.output.page.steps import shown_steps
 if TYPE_CHECKING:
     from magshell.solver.path import Path
 
-SCRIPTS = ("data.js", "body.js", "camera.js", "scene.js", "curves.js", "page.js")
+SCRIPTS = ("data.js", "body.js", "camera.js", "scene.js", "curves.js", "solid.js", "page.js")
 TITLE = "Deformed shell"
 
 

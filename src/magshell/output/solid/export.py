@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 STL, VTU = ".stl", ".vtu"
 # STL files say no unit; programs that read them take millimetres.
 MM = 1e3
+# Bytes of a triangle; the head of a file has more, and less than two.
+RECORD = 50
 
 
 class Written(NamedTuple):
@@ -75,16 +77,19 @@ def write_solid(path: Path, file: str | os.PathLike[str], step: int = -1) -> Wri
     reached = converged(path.discretisation, shown)
     body = slab_of(reached)
     if target.suffix.lower() == STL:
-        surface = closed_surface(body)
-        write_atomically(target, stl(surface))
-        return Written(target, shown.number, volume(body), len(surface.triangles))
+        content = stl(closed_surface(body))
+        write_atomically(target, content)
+        return Written(target, shown.number, volume(body), len(content) // RECORD - 1)
     write_atomically(target, vtu(solid_grid(reached, shown)))
     return Written(target, shown.number, volume(body), len(body.elements))
 
 
 def stl(surface: Surface) -> bytes:
-    """A binary STL file, mm."""
-    corners = (MM * surface.points).astype("<f4")[surface.triangles]
+    """A binary STL file, mm. Points that single precision makes one are one; triangles between them are left out."""
+    points, number = np.unique((MM * surface.points).astype("<f4") + np.float32(0.0), axis=0, return_inverse=True)
+    triangles = number.ravel()[surface.triangles]
+    triangles = triangles[np.all(triangles != np.roll(triangles, 1, axis=1), axis=1)]
+    corners = points[triangles]
     sides = corners[:, 1:].astype(float) - corners[:, :1]
     normals = np.cross(sides[:, 0], sides[:, 1])
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)

@@ -17,6 +17,7 @@ import numpy as np
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.evaluation.converged import Converged
+from magshell.mesh import Mesh
 from magshell.mesh.edges import find_edges, is_triangle
 from magshell.shell import triangle
 from magshell.shell.shape_functions import gauss_legendre, serendipity
@@ -73,11 +74,20 @@ def slab_of(reached: Converged) -> Slab:
         More than two elements meet at an edge: there the body has no outside of its own.
     """
     mesh = reached.mesh
-    if (find_edges(mesh.elements).sharing > 2).any():
+    if not has_outside(mesh):
         raise InputError("export: more than two elements meet at an edge; a body of such a mesh is not made yet")
+    return slab(mesh.elements, mesh.points + reached.displacement, reached.director(), heights_of(reached))
+
+
+def heights_of(reached: Converged) -> FloatArray:
+    """Heights t (2, elements, 8) of both faces at the nodes of each element, in directors."""
     z = np.moveaxis(reached.discretisation.model.shell.faces_at_nodes, 2, 0)
-    heights = (1.0 + reached.element_stretch()) * (z + reached.element_phi() * z**2)
-    return slab(mesh.elements, mesh.points + reached.displacement, reached.director(), heights)
+    return np.asarray((1.0 + reached.element_stretch()) * (z + reached.element_phi() * z**2))
+
+
+def has_outside(mesh: Mesh) -> bool:
+    """Whether at most two elements meet at each edge."""
+    return bool((find_edges(mesh.elements).sharing <= 2).all())
 
 
 def slab(elements: IntArray, middle: FloatArray, director: FloatArray, heights: FloatArray) -> Slab:

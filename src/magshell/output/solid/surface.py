@@ -68,13 +68,23 @@ def closed_surface(body: Slab) -> Surface:
 
 def surface(body: Slab, pieces: int) -> Surface:
     """The surface with each side of an element cut into so many pieces."""
-    places = _Places(body, pieces)
-    used, triangles = np.unique(np.concatenate([*places.faces(), _strips(*places.strips())]), return_inverse=True)
-    return Surface(places.points[used], triangles.reshape(-1, 3))
+    lattices = Lattices(body, pieces)
+    used, triangles = lattices.triangles()
+    return Surface(lattices.points[used], triangles)
 
 
-class _Places:
-    """Points of the lattices of both faces, shared along edges: levels of the nodes first, then edges, then insides."""
+class Lattices:
+    """Points of the lattices of both faces, shared along edges: levels of the nodes first, then edges, then insides.
+
+    Attributes
+    ----------
+    lattices : list of Lattice
+        Of the quadrilaterals and of the triangles, if there are any.
+    numbers : list of ndarray, shape (2, elements, lattice points)
+        For each, the points of the lower and of the upper faces.
+    points : ndarray, shape (n, 3)
+        m.
+    """
 
     def __init__(self, body: Slab, pieces: int) -> None:
         self.body, self.pieces = body, pieces
@@ -88,7 +98,7 @@ class _Places:
                 free = numbers[side, 0] < 0
                 count = len(numbers[side]), int(free.sum())
                 numbers[side][:, free] = first + np.arange(count[0] * count[1]).reshape(count)
-                positions = body.levels[_levels(body, lattice)[side]]
+                positions = body.levels[self.levels(lattice)[side]]
                 inner.append(np.einsum("mn,enx->emx", lattice.N[free], positions).reshape(-1, 3))
                 first += len(inner[-1])
         self.points = np.concatenate(inner)
@@ -100,7 +110,7 @@ class _Places:
         """
         triples, where = [], []
         for lattice, numbers, (corners, sides) in zip(self.lattices, self.numbers, self._sides, strict=True):
-            levels = _levels(self.body, lattice)
+            levels = self.levels(lattice)
             numbers[:, :, corners] = levels[:, :, : len(corners)]
             ends = TRIANGLE_SIDES if len(corners) == 3 else QUAD_SIDES
             for side, along in zip(ends, sides, strict=True):
@@ -122,13 +132,23 @@ class _Places:
         functions = np.stack([t * (t - 1) / 2, t * (t + 1) / 2, 1 - t**2], axis=1)
         return np.asarray(np.einsum("mn,cnx->cmx", functions, self.body.levels[curves]).reshape(-1, 3))
 
-    def faces(self) -> Iterator[IntArray]:
+    def levels(self, lattice: Lattice) -> IntArray:
+        """Levels (2, n, nodes) of the elements of a lattice, in its order of nodes."""
+        at = self.body.at[:, lattice.elements]
+        return np.asarray(at[:, :, triangle.SLOTS] if lattice.nodes.shape[1] == len(triangle.SLOTS) else at)
+
+    def triangles(self) -> tuple[IntArray, IntArray]:
+        """Points that the surface has, and its triangles (n, 3), which number these."""
+        used, triangles = np.unique(np.concatenate([*self._faces(), _strips(*self._walls())]), return_inverse=True)
+        return used, triangles.reshape(-1, 3)
+
+    def _faces(self) -> Iterator[IntArray]:
         """Triangles of the faces."""
         for lattice, numbers in zip(self.lattices, self.numbers, strict=True):
             yield numbers[LOWER][:, lattice.pieces[:, ::-1]].reshape(-1, 3)
             yield numbers[UPPER][:, lattice.pieces].reshape(-1, 3)
 
-    def strips(self) -> tuple[IntArray, IntArray]:
+    def _walls(self) -> tuple[IntArray, IntArray]:
         """Pairs of curves (n, pieces + 1) that walls and risers join, points by number; the outside is on the right."""
         edges = find_edges(self.body.elements)
         edge, low, high = [], [], []
@@ -148,12 +168,6 @@ class _Places:
         below = [lower[alone], upper[other[risen]][:, ::-1], lower[one[sunk]]]
         above = [upper[alone], upper[one[risen]], lower[other[sunk]][:, ::-1]]
         return np.concatenate(below), np.concatenate(above)
-
-
-def _levels(body: Slab, lattice: Lattice) -> IntArray:
-    """Levels (2, n, nodes) of the elements of a lattice, in its order of nodes."""
-    at = body.at[:, lattice.elements]
-    return np.asarray(at[:, :, triangle.SLOTS] if lattice.nodes.shape[1] == len(triangle.SLOTS) else at)
 
 
 def _sides(lattice: Lattice, pieces: int) -> tuple[IntArray, IntArray]:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from magshell.drawing import drawing
+from magshell.evaluation.outputs import chosen
 from magshell.linalg import make_solver
 from magshell.magnetics import COUPLINGS, UniformField
 from magshell.mesh import Mesh
@@ -85,6 +86,8 @@ def build(file: ProblemFile, source: str, text: str = "", folder: pathlib.Path =
         supports = _supports(file.supports, mesh)
         loads = _loads(file.loads, shell)
         _probes_exist(file.probes, mesh)
+        with at("results.outputs"):
+            chosen(file.results.outputs)
         model = Model(
             shell,
             supports=supports,
@@ -93,6 +96,8 @@ def build(file: ProblemFile, source: str, text: str = "", folder: pathlib.Path =
             probes=file.probes,
             loads=loads,
             stages=_stages(file.stages),
+            local_axis=file.results.local_axis,
+            outputs=file.results.outputs,
         )
         settings = Settings(**file.solver.model_dump(exclude_none=True))
         make_solver(settings.linear_solver)

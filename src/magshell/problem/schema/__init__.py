@@ -36,7 +36,7 @@ from magshell.problem.schema.mesh import (
 from magshell.problem.schema.region import LayerTable, RegionTable, ThicknessFile, ThicknessProfile
 from magshell.problem.schema.remanence import FoldTable, RemanenceTable
 from magshell.problem.schema.shell import ShellTable
-from magshell.problem.schema.solving import SolverTable, StageTable
+from magshell.problem.schema.solving import ResultsTable, SolverTable, StageTable
 from magshell.problem.schema.table import Table, key_error
 
 __all__ = [
@@ -56,6 +56,7 @@ __all__ = [
     "Rectangle",
     "RegionTable",
     "RemanenceTable",
+    "ResultsTable",
     "Selection",
     "ShellTable",
     "SolverTable",
@@ -103,6 +104,7 @@ class ProblemFile(Table):
     supports: tuple[SupportTable, ...]
     stages: tuple[StageTable, ...] = ()
     probes: dict[f.ProbeName, f.Position] = {}
+    results: ResultsTable = ResultsTable()
     solver: SolverTable = SolverTable()
 
     @model_validator(mode="after")

@@ -1,4 +1,4 @@
-"""The entries of `stages` and the table `solver`."""
+"""The entries of `stages` and the tables `solver` and `results`."""
 
 from __future__ import annotations
 
@@ -19,6 +19,13 @@ class StageTable(Table):
     target: f.Length | None = None
     branch: f.Count | None = None
     side: Literal[1, -1] = 1
+
+
+class ResultsTable(Table):
+    """What files and pages hold beside what they always do, and the axes that tensors are in."""
+
+    local_axis: f.Direction = (1.0, 0.0, 0.0)
+    outputs: f.Names = ()
 
 
 class SolverTable(Table):
