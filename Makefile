@@ -31,6 +31,7 @@ verify: $(VENV)/installed-dev
 	$(BIN)/pytest -m verify
 	MAGSHELL_MUTATIONS=10000 $(BIN)/pytest tests/faults
 	$(BIN)/python docs/make_element_study.py
+	$(BIN)/python docs/make_incompressible_study.py
 	$(BIN)/python docs/make_accuracy_study.py
 	$(BIN)/python docs/make_published_study.py
 	$(BIN)/python docs/make_path_study.py

@@ -27,7 +27,7 @@ from magshell.evaluation.outputs import OUTPUTS, Output
 from magshell.evaluation.series import SERIES
 from magshell.magnetics import COUPLINGS
 from magshell.magnetics.remanence import REMANENCES
-from magshell.materials import MATERIALS, keys_of
+from magshell.materials import MATERIALS, MODULI, keys_of
 from magshell.model.loads import LOADS
 from magshell.model.parts import MOST_LEVELS
 from magshell.model.supports import SUPPORTS
@@ -44,15 +44,18 @@ KINDS = {
     fields.Length: "length",
     fields.NonNegativeLength: "length ≥ 0",
     fields.Positions: "list of lengths, rising",
-    fields.FluxDensities: "flux density, or list of them",
+    fields.Remanences: "remanence, or list of them",
     fields.Angle: "angle",
     fields.Angles: "angle, or list of them",
     fields.FileName: "file name",
     fields.LengthUnit: "unit of length",
-    fields.FluxDensityUnit: "unit of flux density",
+    fields.RemanenceUnit: "unit of remanence",
     fields.PositiveLength: "length > 0",
     fields.NonNegativeStress: "stress ≥ 0",
     fields.PositiveStress: "stress > 0",
+    fields.Stress: "stress",
+    fields.CouplingModulus: "stress ≥ 0, or multiple of `mu`",
+    fields.LengthScale: "length ≥ 0, or multiple of `h`",
     fields.FluxDensity: "flux density",
     fields.PositiveFluxDensity: "flux density > 0",
     fields.ForceVector: "three forces, not all 0",
@@ -73,6 +76,9 @@ KINDS = {
     fields.AngleRange: "two angles",
     fields.Position: "three lengths",
     fields.FluxVector: "three flux densities",
+    fields.Remanence: "remanence",
+    fields.PositiveRemanence: "remanence > 0",
+    fields.RemanenceVector: "three remanences",
     fields.Direction: "three numbers, not all 0",
     fields.Corners: "four corners, each two or three lengths",
     str: "text",
@@ -198,7 +204,7 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "thickness_stretch": "Stretch that varies linearly across the thickness: an unknown $\\varphi$, none "
             "(locks in bending), or eliminated at each point.",
             "micro_rotation": "Without it: the classical shell of seven parameters, whose `coupling_modulus` and "
-            "`length_scale` are 0, and whose coupling is `deformation-gradient`.",
+            "`length_scale` are 0 (also as multiples), and whose coupling is `deformation-gradient`.",
         },
     ),
     "region": (
@@ -331,9 +337,10 @@ class Described(NamedTuple):
 
 
 ENTRY = {"kind": "Which field.", "group": "Element groups it holds for; may be left out of a single entry."}
+LAW = {"law": "The material law; `micropolar-` may be left out."}
 DESCRIBED = {
     **{
-        name.removeprefix("micropolar-"): Described(table, keys_of(MATERIALS[name]), {"law": "The material law."})
+        name.removeprefix("micropolar-"): Described(table, {**MODULI, **keys_of(MATERIALS[name])}, LAW)
         for name, table in schema.material_tables().items()
     },
     **{

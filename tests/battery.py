@@ -36,6 +36,9 @@ PARAMETERS = {
     "lame_lambda": 1.7,
     "coupling_modulus": 0.3,
     "length_scale": 0.2,
+    "extension_limit": 9.0,
+    "c20": -0.04,
+    "c30": 0.01,
     "vacuum_permeability": 0.8,
 }
 THICKNESS = 0.15

@@ -33,6 +33,8 @@ thickness = "1 mm"
 law = "micropolar-neo-hookean"
 shear_modulus = "303 kPa"
 lame_lambda = "7300 kPa"
+coupling_modulus = "0.1 mu"
+length_scale = "0.1 h"
 
 [[remanence]]
 kind = "constant"

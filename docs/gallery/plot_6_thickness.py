@@ -32,6 +32,7 @@ thickness = "0.8 mm"
 law = "micropolar-neo-hookean"
 shear_modulus = "303 kPa"
 lame_lambda = "7300 kPa"
+coupling_modulus = "0.1 mu"
 length_scale = "0.005 mm"
 
 [[remanence]]

@@ -20,7 +20,14 @@ if TYPE_CHECKING:
         UniformField,
         remanence,
     )
-    from magshell.materials import MicropolarMooneyRivlin, MicropolarNeoHookean, MicropolarStVenantKirchhoff
+    from magshell.materials import (
+        MicropolarGent,
+        MicropolarMooneyRivlin,
+        MicropolarNeoHookean,
+        MicropolarStVenantKirchhoff,
+        MicropolarYeoh,
+        composite,
+    )
     from magshell.model import thickness
     from magshell.model.loads import Force, Gravity, Moment, Pressure, Traction
     from magshell.model.model import Model
@@ -40,7 +47,14 @@ _HOME = {
         "MicropolarCouple",
         "UniformField",
     ),
-    "magshell.materials": ("MicropolarMooneyRivlin", "MicropolarNeoHookean", "MicropolarStVenantKirchhoff"),
+    "magshell.materials": (
+        "MicropolarGent",
+        "MicropolarMooneyRivlin",
+        "MicropolarNeoHookean",
+        "MicropolarStVenantKirchhoff",
+        "MicropolarYeoh",
+        "composite",
+    ),
     "magshell.model.model": ("Model",),
     "magshell.model.region": ("Layer", "Region"),
     "magshell.model.shell": ("Shell",),
@@ -71,9 +85,11 @@ __all__ = [
     "MeshError",
     "MicroRotationEnergy",
     "MicropolarCouple",
+    "MicropolarGent",
     "MicropolarMooneyRivlin",
     "MicropolarNeoHookean",
     "MicropolarStVenantKirchhoff",
+    "MicropolarYeoh",
     "Model",
     "Moment",
     "Observer",
@@ -91,6 +107,7 @@ __all__ = [
     "Traction",
     "UniformField",
     "buckling",
+    "composite",
     "mesh",
     "problem",
     "remanence",

@@ -11,7 +11,6 @@ import pathlib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from magshell import problem
 from magshell.errors import InputError
 from magshell.files import first_line, naming, refuse_somebodys, refuse_to_replace, write_atomically
 from magshell.output import checkpoint, step_checks
@@ -21,7 +20,9 @@ from magshell.output.history import HistoryWriter
 from magshell.output.summary import SummaryWriter
 from magshell.output.vtu import VtuWriter
 from magshell.problem import copies
-from magshell.problem.building import Problem
+from magshell.problem.building import Problem, build, with_earlier_defaults
+from magshell.problem.building.material import by_default
+from magshell.problem.reading import check, find, parse
 from magshell.solver import Observer, Path
 from magshell.solver.newton import StepFailure
 from magshell.solver.retracing import path_through
@@ -81,7 +82,7 @@ def read(directory: str | os.PathLike[str]) -> Results:
         raise InputError(f"{folder}: is not a results folder; one that `magshell run --out` made has a {PROBLEM}")
     if not files:
         raise InputError(f"{folder}: no step has converged there yet; `magshell run --resume` begins it")
-    found = problem.load(folder / PROBLEM)
+    found = _as_it_was(_built(folder / PROBLEM), files[0])
     origins: list[Origin] = []
     try:
         path = path_through(found.model, found.settings, _waypoints(found, files, origins))
@@ -169,6 +170,20 @@ def writers(source: Problem, directory: pathlib.Path) -> list[Observer]:
         VtuWriter(directory),
         CriticalWriter(directory),
     ]
+
+
+def _built(file: pathlib.Path) -> Problem:
+    """The problem of a folder, without a word on defaults: its run has said it."""
+    source = find(file)
+    return build(check(parse(source.text, source.name), source.name), *source)
+
+
+def _as_it_was(found: Problem, first: pathlib.Path) -> Problem:
+    """The problem with the defaults of the time when the run began."""
+    if by_default(found.file) is None:
+        return found
+    _, origin = checkpoint.read_step(first, step_checks.most_bytes(found.model))
+    return found if origin.version > 1 else with_earlier_defaults(found)
 
 
 def _waypoints(source: Problem, files: Iterable[pathlib.Path], origins: list[Origin]) -> Iterator[Waypoint]:

@@ -58,6 +58,8 @@ def _dimension(name: str, units: dict[str, str], display: dict[str, float]) -> D
 with localcontext() as _context:
     _context.prec = 36
     _DEGREE = str(Decimal(_PI) / 180)
+    _VACUUM_PERMEABILITY = str(Decimal(_PI) * Decimal("4e-7"))
+    _KILOAMPERE = str(Decimal(_PI) * Decimal("4e-4"))
 
 LENGTH = _dimension(
     "length",
@@ -69,11 +71,15 @@ STRESS = _dimension(
     {"Pa": "1", "kPa": "1e3", "MPa": "1e6", "GPa": "1e9", "N/mm^2": "1e6"},
     {"GPa": 1e9, "MPa": 1e6, "kPa": 1e3, "Pa": 0.0},
 )
-FLUX_DENSITY = _dimension(
-    "magnetic flux density",
-    {"T": "1", "mT": "1e-3", "uT": "1e-6", "µT": "1e-6", "G": "1e-4", "Gauss": "1e-4"},
-    {"T": 1.0, "mT": 1e-4, "uT": 0.0},
+_TESLA = {"T": "1", "mT": "1e-3", "uT": "1e-6", "µT": "1e-6", "G": "1e-4", "Gauss": "1e-4"}
+_SHOWN_TESLA = {"T": 1.0, "mT": 1e-4, "uT": 0.0}
+FLUX_DENSITY = _dimension("magnetic flux density", _TESLA, _SHOWN_TESLA)
+REMANENCE = _dimension(
+    "remanence",
+    {**_TESLA, "A/m": _VACUUM_PERMEABILITY, "kA/m": _KILOAMPERE, "emu/cm^3": _KILOAMPERE},
+    _SHOWN_TESLA,
 )
+"""A remanent flux density, also as the magnetisation M that makes it: mu0 M."""
 ANGLE = _dimension("angle", {"rad": "1", "deg": _DEGREE}, {"deg": 0.0})
 INVERSE_LENGTH = _dimension("inverse length", {"1/m": "1", "1/mm": "1e3"}, {"1/mm": 1e3, "1/m": 0.0})
 FORCE = _dimension(
@@ -95,6 +101,7 @@ QUANTITIES = (
     LENGTH,
     STRESS,
     FLUX_DENSITY,
+    REMANENCE,
     ANGLE,
     INVERSE_LENGTH,
     FORCE,
@@ -103,6 +110,11 @@ QUANTITIES = (
     DENSITY,
 )
 """All kinds that have a unit."""
+
+_IN_PLACE_OF_H = {one.name: f" (units: {one.allowed})" for one in QUANTITIES} | {
+    FLUX_DENSITY.name: ": in air 1 Oe belongs to a flux density of 1 G",
+    REMANENCE.name: ": write the remanence in T or G, or the magnetisation in kA/m or emu/cm^3",
+}
 
 
 def parse(value: object, dimension: Dimension, unit: str | None = None) -> float:
@@ -193,6 +205,15 @@ def _split(value: object, dimension: Dimension) -> tuple[Decimal, str]:
 
 
 def _wrong_unit(found: str, dimension: Dimension) -> str:
+    if found in ("Oe", "kOe"):
+        return (
+            f"is in oersted, a unit of the field strength H and not of {dimension.name}{_IN_PLACE_OF_H[dimension.name]}"
+        )
+    if dimension is FLUX_DENSITY and found in REMANENCE.units:
+        return (
+            f"is a magnetisation or field strength where a {dimension.name} is expected: in air 1 kA/m belongs to "
+            f"1.2566 mT (units: {dimension.allowed})"
+        )
     for other in QUANTITIES:
         if found in other.units:
             return f"is a {other.name} where a {dimension.name} is expected (units: {dimension.allowed})"

@@ -101,7 +101,7 @@ def test_fields(field, words, caplog):
     with caplog.at_level(logging.WARNING):
         found = broken(model(HALF, [ms.Clamp("right"), PLANE], field))
     assert bool(found) == bool(words), found
-    assert [record.getMessage() for record in caplog.records] == found
+    assert [one.getMessage() for one in caplog.records if one.name == "magshell.model.symmetry"] == found
     if words:
         assert found[0].startswith("symmetry 'left': the field (")
         assert words in found[0]

@@ -19,8 +19,9 @@ from problem_files import changed
 
 import magshell as ms
 from magshell.cli import main
-from magshell.output.checkpoint import CheckpointWriter, read_step, step_files
+from magshell.output.checkpoint import CheckpointWriter, content, read_step, step_files
 from magshell.output.lock import alone
+from magshell.problem import copies
 from magshell.progress import ProgressDisplay
 from magshell.solver import Step
 
@@ -69,6 +70,25 @@ def contents(out: Path) -> dict[str, object]:
         elif file.is_file() and file.suffix != ".png" and file.name != ".lock":
             found[name] = file.read_bytes()
     return found
+
+
+def test_an_older_folder_keeps_the_defaults_of_its_time(
+    stopped: Path, finished: Path, no_pictures: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its file says no coupling modulus and no length scale, which then were what the file of `finished` says."""
+    said = 'coupling_modulus = "0.1 mu"\nlength_scale = "0.1 h"\n'
+    (stopped / "problem.toml").write_text(changed(STRIP, (said, "")))
+    digest = copies.digest(ms.problem.load(stopped / "problem.toml"))
+    steps = {file: read_step(file) for file in step_files(stopped)}
+    with monkeypatch.context() as then:
+        then.setattr("magshell.output.checkpoint.VERSION", 1)
+        for file, (waypoint, origin) in steps.items():
+            file.write_bytes(content(waypoint, origin._replace(problem=digest)))
+    material = ms.results.read(stopped).problem.model.shell.material
+    assert material == ms.results.read(finished).problem.model.shell.material
+    assert main(["run", "--resume", str(stopped)]) == 0
+    assert contents(stopped)["history.csv"] == contents(finished)["history.csv"]
+    assert ms.results.read(stopped).path.model.shell.material == material
 
 
 @pytest.mark.parametrize("command", [["run", "--resume"], ["run", "strip.toml", "--out"], ["view"], ["plot"]])

@@ -100,7 +100,7 @@ def test_a_template_from_displacements(tmp_path):
         ("B1,b2,b3,b1,B1\n1,2,3,4,5\nx\n", "line 3: has 1 fields"),
         ("B1,b2,b3, B1\n1,2,3,4\n", "more than one column is named 'b1'"),
         ("b1 [mT],b2,b3\n1,2,3\n", "line 1: b1 is in 'mT', but flux_density_unit says 'T'"),
-        ("b1,b2 (Oe),b3\n1,2,3\n", "line 1: b2 is in 'Oe', which is no unit of magnetic flux density"),
+        ("b1,b2 (Oe),b3\n1,2,3\n", "line 1: b2 is in 'Oe', which is no unit of remanence"),
         ("b1,b2,b3,x1/mm,x2,x3\n1,2,3,4,5,6\n", "line 1: x1 is in 'mm', but length_unit says 'm'"),
         (
             "x1,x2,x3,b1,b2,b3\n1,1,0,5,0,0\n2,1,0,5,0,0\n\n1,1,0,7,0,0\n",
@@ -234,5 +234,5 @@ def test_files_and_units_that_do_not_exist(tmp_path):
         remanence.from_file(tmp_path / "b.npy")
     with pytest.raises(InputError, match="cannot be read"):
         remanence.from_file(tmp_path)
-    with pytest.raises(InputError, match=r"'mt' is not a unit of magnetic flux density\. Did you mean 'mT'"):
+    with pytest.raises(InputError, match=r"'mt' is not a unit of remanence\. Did you mean 'mT'"):
         remanence.from_file(tmp_path / "b.csv", flux_density_unit="mt")

@@ -5,7 +5,13 @@ from __future__ import annotations
 import numpy as np
 from shell.jets import log
 
-from magshell.materials import MicropolarMooneyRivlin, MicropolarNeoHookean, MicropolarStVenantKirchhoff
+from magshell.materials import (
+    MicropolarGent,
+    MicropolarMooneyRivlin,
+    MicropolarNeoHookean,
+    MicropolarStVenantKirchhoff,
+    MicropolarYeoh,
+)
 
 
 def cofactor(U):
@@ -46,9 +52,27 @@ def st_venant_kirchhoff(material, U):
     return volumetric + 0.25 * material.shear_modulus * (square - 2 * first + 3) + relative_rotation(material, U)
 
 
+def gent(material, U):
+    """Gent's logarithm of tr C, and what makes the undeformed state free of stress with lambda as its constant."""
+    mu, limit, log_J = material.shear_modulus, material.extension_limit, log(determinant(U))
+    distortion = -0.5 * mu * limit * log((limit + 3 - np.trace(U.T @ U)) * (1 / limit))
+    bulk = material.lame_lambda - 2 * mu / limit
+    return distortion - mu * log_J + 0.5 * bulk * log_J**2 + relative_rotation(material, U)
+
+
+def yeoh(material, U):
+    """C10 x + C20 x² + C30 x³ with x = tr C - 3."""
+    x, log_J, mu = np.trace(U.T @ U) - 3, log(determinant(U)), material.shear_modulus
+    cubic = 0.5 * mu * x + material.c20 * x * x + material.c30 * x * x * x
+    bulk = material.lame_lambda - 8 * material.c20
+    return cubic - mu * log_J + 0.5 * bulk * log_J**2 + relative_rotation(material, U)
+
+
 ENERGIES = {
     MicropolarNeoHookean: neo_hookean,
     MicropolarMooneyRivlin: mooney_rivlin,
     MicropolarStVenantKirchhoff: st_venant_kirchhoff,
+    MicropolarGent: gent,
+    MicropolarYeoh: yeoh,
 }
 """W(U) by law; a new law needs its entry here."""

@@ -86,7 +86,7 @@ def test_every_bit_comes_back(file: Path, plain: bool) -> None:
 def test_a_file_is_readable_without_this_package(file: Path) -> None:
     with np.load(file, allow_pickle=False) as arrays:
         assert str(arrays["format"]) == "magshell checkpoint"
-        assert int(arrays["version"]) == 1
+        assert int(arrays["version"]) == 2
         np.testing.assert_array_equal(arrays["u"], waypoint().step.state.u)
 
 
@@ -132,7 +132,7 @@ def other(**changes: object) -> bytes:
         (b"", r"is damaged .*goes on from step 6"),
         (b"PK not a zip file", r"is damaged"),
         (other(format="somebody's arrays"), r"is not a checkpoint of magshell. Delete it"),
-        (other(version=2), r"has version 2 of the format, this magshell reads up to 1; update it"),
+        (other(version=3), r"has version 3 of the format, this magshell reads up to 2; update it"),
         (other(u=None), r"is damaged \(KeyError: 'u'\)"),
         (other(settings="{"), r"is damaged"),
         (other(number=8), r"holds step 8; it was renamed"),

@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from problem_files import changed
 
 from magshell.errors import InputError
-from magshell.problem.reading import Source
+from magshell.problem.reading import Source, parse
 from magshell.sweep.folder import SweepFolder
 from sweep.conftest import SETTINGS, SOURCE
 
@@ -46,10 +47,10 @@ def test_a_run_is_left_alone(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("version = 1", "version = 2", "sweep.toml: version: is 2; this magshell reads version 1"),
-        ("version = 1", "", "sweep.toml: version: is None"),
-        ("version = 1", "version = ", "sweep.toml: is damaged"),
-        ("version = 1", "version = " + 9999 * "[", "sweep.toml: is damaged"),
+        ("version = 2", "version = 3", "sweep.toml: version: is 3; this magshell reads versions 1 and 2"),
+        ("version = 2", "", "sweep.toml: version: is None"),
+        ("version = 2", "version = ", "sweep.toml: is damaged"),
+        ("version = 2", "version = " + 9999 * "[", "sweep.toml: is damaged"),
         ("folder = ", "ordner = ", "sweep.toml: problem and folder"),
         ("set = [", "set = 3\n#", "sweep.toml: "),
         ("set = [", "set = [3,", "sweep.toml: set: is not a list of texts"),
@@ -64,6 +65,21 @@ def test_a_damaged_definition(old: str, new: str, words: str, folder: SweepFolde
         folder.read()
     assert words in str(error.value)
     assert str(error.value).startswith(str(folder.path))
+
+
+def test_an_older_sweep_keeps_the_defaults_of_its_time(folder: SweepFolder) -> None:
+    """Those of materials changed with version 2; what the file says, and shells without micro-rotation, have none."""
+    former = 'coupling_modulus = "0.1 mu"\nlength_scale = "0.1 h"\n'
+    bare = changed(SOURCE.text, (former, ""))
+    folder.problem.write_text(bare)
+    assert folder.read()[0].text == bare
+    folder.definition.write_text(folder.definition.read_text().replace("version = 2", "version = 1"))
+    material = parse(folder.read()[0].text, "strip.toml")["material"]
+    assert (material["coupling_modulus"], material["length_scale"]) == ("0.1 mu", "0.1 h")
+    classical = changed(bare, ('thickness = "1 mm"', 'thickness = "1 mm"\nmicro_rotation = false'))
+    for text in (SOURCE.text, classical):
+        folder.problem.write_text(text)
+        assert folder.read()[0].text == text
 
 
 def test_no_sweep(tmp_path: Path, folder: SweepFolder) -> None:

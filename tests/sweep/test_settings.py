@@ -21,6 +21,7 @@ from magshell.problem.fields import (
     ForceVector,
     MomentVector,
     NodalValue,
+    RemanenceVector,
     StressVector,
 )
 from magshell.problem.reading import Source, check, find, parse
@@ -126,7 +127,7 @@ def test_a_magnitude_of_a_load() -> None:
 
 
 def test_every_vector_with_a_unit_takes_a_magnitude() -> None:
-    kinds = {FluxVector, ForceVector, MomentVector, StressVector, AccelerationVector, NodalValue}
+    kinds = {FluxVector, RemanenceVector, ForceVector, MomentVector, StressVector, AccelerationVector, NodalValue}
     tables = [getattr(schema, name) for name in schema.__all__]
     for described in (schema.load_tables, schema.remanence_tables, schema.support_tables):
         tables += described().values()

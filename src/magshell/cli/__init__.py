@@ -65,8 +65,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     write_readably()
     given = _parser().parse_args(arguments)
-    # Commands say themselves what is broken.
-    logging.getLogger("magshell.model.symmetry").addHandler(logging.NullHandler())
+    # Commands say themselves what is doubtful.
+    for part in ("magshell.model", "magshell.problem"):
+        logging.getLogger(part).addHandler(logging.NullHandler())
     try:
         allocate_buffers()
         return int(given.command(given))

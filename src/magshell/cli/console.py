@@ -25,9 +25,11 @@ def say(on: Console, text: str, style: str | None = None) -> None:
 
 
 def say_doubts(on: Console, report: Report) -> None:
-    """The warnings of a report."""
+    """The warnings and notes of a report."""
     for doubt in report.warnings:
         say(on, f"warning: {doubt}", style="yellow")
+    for note in report.notes:
+        say(on, f"note: {note}")
 
 
 def say_picture(on: Console, picture: pathlib.Path | str) -> None:

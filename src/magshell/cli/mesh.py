@@ -14,17 +14,20 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from magshell.mesh import Mesh
-    from magshell.mesh.files import FileMesh
+    from magshell.mesh.opening import Wishes
 
-ABOUT = "mesh a geometry with gmsh, or read a mesh file, and say what is in it"
+ABOUT = "mesh a drawing or a geometry with gmsh, or read a mesh file, and say what is in it"
 EXAMPLES = """
 examples:
   magshell mesh part.step --size "0.5 mm"               writes part.msh
   magshell mesh flower.geo --unit mm --size "0.7 mm" --out flower.msh
+  magshell mesh outline.dxf --size "1 mm"               layers become groups
+  magshell mesh plate.stl --unit mm --mid-surface       of the skin of a solid, or of a body or solid elements
   magshell mesh part.msh --unit mm                      says what is in a mesh; writes nothing
   magshell mesh part.inp --unit mm --second-order --out part.msh
 
 A geometry (.geo, .step, .iges, .brep) is meshed by gmsh into quadrilaterals: pip install "magshell[gmsh]".
+So are the outlines of a drawing (.dxf, .svg, .csv) and mid-surfaces: pip install "magshell[drawings]".
 A mesh (.msh, Abaqus .inp, Nastran .bdf, .unv, .vtu, .vtk, others through pip install "magshell[meshio]") is read,
 checked and, with --out, written. STEP and IGES files say the unit of their lengths; of others --unit does. What is
 written says its unit itself:
@@ -34,8 +37,8 @@ written says its unit itself:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What follows the command."""
-    parser.add_argument("file", metavar="FILE", help="a geometry or a mesh")
-    parser.add_argument("--size", metavar="LENGTH", help='side of an element, such as "0.5 mm"; of a geometry only')
+    parser.add_argument("file", metavar="FILE", help="a drawing, a geometry or a mesh")
+    parser.add_argument("--size", metavar="LENGTH", help='side of an element, such as "0.5 mm"; not of a mesh')
     parser.add_argument("--unit", metavar="UNIT", help="of the lengths in the file: m, cm, mm or um")
     parser.add_argument(
         "--out", metavar="FILE.msh", help="the mesh to write; of a geometry: here, by its name, without it"
@@ -47,6 +50,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--closed", action="store_true", help="a closed surface with edges is meant, such as a box, and no solid's skin"
     )
     parser.add_argument(
+        "--mid-surface", action="store_true", help="of a solid of constant thickness: a body, solid elements, or a skin"
+    )
+    parser.add_argument("--holes", metavar="LAYER", nargs="+", help="layers of a drawing whose outlines are holes")
+    parser.add_argument("--gap", metavar="LENGTH", help="ends of a drawing's lines closer than this are joined")
+    parser.add_argument(
         "--trust-script", action="store_true", help="let a .geo run programs and write files, as gmsh does"
     )
 
@@ -54,19 +62,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(given: argparse.Namespace) -> int:
     """Mesh or read, say, write."""
     from magshell.mesh import write
-    from magshell.mesh.files.paths import GEOMETRY
     from magshell.mesh.files.summary import in_words
+    from magshell.mesh.opening import meshes, open_mesh
 
     out = console()
-    source = pathlib.Path(given.file)
-    geometry = source.suffix.lower() in GEOMETRY
-    target = _target(given.out, source, geometry)
-    if geometry:
+    source, wishes = pathlib.Path(given.file), _wishes(given)
+    made = meshes(source, wishes)
+    target = _target(given.out, source, made)
+    if made:
         say(out, f"meshing {source.name} with gmsh ...")
-        mesh = _meshed(given)
+        mesh = open_mesh(source, wishes)
     else:
         with out.status(f"reading {source.name} ..."):
-            mesh = _read(given)
+            mesh = open_mesh(source, wishes)
     lines = in_words(mesh, mesh.origin)
     width = max(len(label) for label, _ in lines)
     say(out, source.name, style="bold")
@@ -87,27 +95,27 @@ def say_origin(out: Console, mesh: Mesh) -> None:
         say(out, f"mesh: {in_a_line(mesh, mesh.origin)}")
 
 
-def _meshed(given: argparse.Namespace) -> FileMesh:
-    from magshell.mesh import from_cad
+def _wishes(given: argparse.Namespace) -> Wishes:
+    from magshell.mesh.opening import Wishes
     from magshell.units import LENGTH, parse
 
-    if given.second_order:
-        raise InputError("--second-order: a geometry is meshed to second order anyway; leave it out")
-    size = None
-    if given.size is not None:
+    lengths = {}
+    for option in ("size", "gap"):
+        said = getattr(given, option)
         try:
-            size = parse(given.size, LENGTH)
+            lengths[option] = None if said is None else parse(said, LENGTH)
         except InputError as error:
-            raise InputError(f"--size: {error}") from None
-    return from_cad(given.file, size, given.unit, given.trust_script, given.closed)
-
-
-def _read(given: argparse.Namespace) -> FileMesh:
-    from magshell.mesh import read
-
-    if given.size is not None:
-        raise InputError(f"--size: {given.file} is a mesh, whose elements have their size; mesh its geometry anew")
-    return read(given.file, given.unit, given.second_order, given.closed)
+            raise InputError(f"--{option}: {error}") from None
+    return Wishes(
+        unit=given.unit,
+        size=lengths["size"],
+        second_order=given.second_order,
+        closed=given.closed,
+        mid_surface=given.mid_surface,
+        holes=tuple(given.holes or ()),
+        gap=lengths["gap"],
+        trust_script=given.trust_script,
+    )
 
 
 def _target(out: str | None, source: pathlib.Path, geometry: bool) -> pathlib.Path | None:

@@ -63,6 +63,8 @@ def run(given: argparse.Namespace) -> int:
         cells = grid(source, settings, display.checked)
         for doubt in doubts(cells):
             say(out, f"warning: {doubt}", style="yellow")
+        for note in dict.fromkeys(cell.note for cell in cells if cell.note):
+            say(out, f"note: {note}")
         made(folder.path)
         folder.begin(source, texts)
         workers = DaskWorkers(given.dask, folder.path) if given.dask else LocalWorkers(given.workers or cores())

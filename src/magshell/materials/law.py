@@ -18,6 +18,7 @@ NaN.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from fractions import Fraction
 from typing import Any, Protocol, TypeVar
 
 import numba
@@ -26,10 +27,48 @@ from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.compiled import Callback, Kernel, also_compiled, call, table
+from magshell.materials.moduli import MODULI, lame_of
+
+BY_DEFAULT: Any = None
+"""In place of a coupling modulus or a length scale: what `completed` puts there when the thickness is known."""
+
+
+class Multiple(float):
+    """A multiple of the shear modulus or the thickness in place of a value, which is not a number before it is known.
+
+    A shell of another thickness puts in another value.
+
+    Attributes
+    ----------
+    factor : Fraction
+    """
+
+    factor: Fraction
+
+    def __new__(cls, factor: Fraction | str, value: float = np.nan) -> Multiple:
+        """With its value, where it is known."""
+        made = super().__new__(cls, value)
+        made.factor = Fraction(factor)
+        return made
+
+    def __getnewargs__(self) -> tuple[Any, ...]:
+        return self.factor, float(self)
+
+    def of(self, whole: float) -> Multiple:
+        """With the nearest double to its value, for a shear modulus or a thickness."""
+        return Multiple(self.factor, float(self.factor * Fraction(whole)))
+
+
+DEFAULTS = {"coupling_modulus": Multiple("1"), "length_scale": Multiple("1/100")}
+"""What is taken in place of `BY_DEFAULT`: of the shear modulus, and of the thickness."""
 
 
 class Material(Protocol):
-    """Parameters of a law; every one is a float in SI units."""
+    """Parameters of a law; every one is a float in SI units.
+
+    Coupling modulus and length scale may be left out: `Shell` puts in the shear modulus and a hundredth of its
+    thickness. `from_moduli`, which `material_law` gives every law, takes other moduli.
+    """
 
     @property
     def shear_modulus(self) -> float:
@@ -69,6 +108,8 @@ def laws() -> list[type]:
 def material_law(law: ElasticLaw | None = None, *more: Any, **named: Any) -> Callable[[AnyMaterial], AnyMaterial]:
     """Register a NamedTuple class of parameters with its function `law(material, U, P, C) -> W`.
 
+    The class receives the class method `from_moduli`.
+
     Raises
     ------
     TypeError
@@ -82,9 +123,43 @@ def material_law(law: ElasticLaw | None = None, *more: Any, **named: Any) -> Cal
 
     def register(cls: AnyMaterial) -> AnyMaterial:
         callbacks[cls] = Callback(_elastic(law, cls), "pppddppp", cls, (law, material_law))
+        setattr(cls, "from_moduli", classmethod(_from_moduli))  # noqa: B010
         return cls
 
     return register
+
+
+def _from_moduli(cls: Any, /, **parameters: Any) -> Any:
+    """The material with two moduli of the linear limit, of any kind.
+
+    Parameters
+    ----------
+    shear_modulus, lame_lambda, youngs_modulus, bulk_modulus : float
+        Pa, and
+    poissons_ratio : float
+        at least 0 and below 0.5: two of the five.
+    **parameters : float
+        Those that the law has beside shear modulus and Lamé constant.
+
+    Raises
+    ------
+    InputError
+        Not two moduli, or two that do not go together.
+    """
+    mu, lam = lame_of({name: parameters.pop(name) for name in MODULI if name in parameters})
+    return cls(shear_modulus=mu, lame_lambda=lam, **parameters)
+
+
+def completed(material: Any, thickness: float, micro_rotation: bool = True) -> Any:
+    """The material with what was left out or given as multiples; without micro-rotation both are 0."""
+    values = {}
+    for name, default in DEFAULTS.items():
+        given = getattr(material, name, 0.0)
+        multiple = default if given is BY_DEFAULT else given
+        if isinstance(multiple, Multiple):
+            whole = material.shear_modulus if name == "coupling_modulus" else thickness
+            values[name] = multiple.of(whole if micro_rotation else 0.0)
+    return material._replace(**values)
 
 
 def _elastic(law: ElasticLaw, cls: Any) -> Callable[..., float]:
@@ -128,6 +203,7 @@ def evaluate(material: Material, U: FloatArray) -> tuple[FloatArray, FloatArray,
     Parameters
     ----------
     material : Material
+        Its length scale does not matter.
     U : ndarray, shape (..., 3, 3)
         With positive determinants.
 
@@ -136,6 +212,7 @@ def evaluate(material: Material, U: FloatArray) -> tuple[FloatArray, FloatArray,
     W, P, C : ndarray, shape (...,), (..., 3, 3) and (..., 3, 3, 3, 3)
         J/m³ and Pa.
     """
+    material = completed(material, thickness=0.0)
     points = np.ascontiguousarray(U, dtype=float).reshape(-1, 3, 3)
     count, places = len(points), np.shape(U)[:-2]
     W, P, C = np.empty(count), np.empty((count, 3, 3)), np.empty((count, 3, 3, 3, 3))

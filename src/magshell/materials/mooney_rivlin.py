@@ -23,7 +23,7 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.keys import Key
-from magshell.materials.law import material_law
+from magshell.materials.law import BY_DEFAULT, material_law
 from magshell.materials.tensors import inverse_transpose
 
 
@@ -78,18 +78,18 @@ class MicropolarMooneyRivlin(NamedTuple):
         mu of the linear limit, Pa.
     lame_lambda : float
         lambda of the linear limit, Pa; at least twice the second invariant's share of mu.
-    coupling_modulus : float
-        eta, Pa; ties the micro-rotation to the macro-rotation.
-    length_scale : float
-        l, m; couple stress M̃ = mu l² G.
+    coupling_modulus : float, optional
+        eta, Pa; ties the micro-rotation to the macro-rotation. By default mu.
+    length_scale : float, optional
+        l, m; couple stress M̃ = mu l² G. By default a hundredth of the thickness.
     second_invariant_share : float
         s in [0, 1): part of mu carried by the second invariant.
     """
 
     shear_modulus: float
     lame_lambda: float
-    coupling_modulus: float
-    length_scale: float
+    coupling_modulus: float = BY_DEFAULT
+    length_scale: float = BY_DEFAULT
     second_invariant_share: Annotated[
         float, Key("Number", "Part of $\\mu$ carried by the second invariant, in [0, 1).")
     ] = 0.25

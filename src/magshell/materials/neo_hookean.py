@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.materials.law import Material, material_law
+from magshell.materials.law import BY_DEFAULT, Material, material_law
 from magshell.materials.tensors import inverse_transpose
 
 
@@ -58,16 +58,16 @@ class MicropolarNeoHookean(NamedTuple):
         mu, Pa.
     lame_lambda : float
         lambda, Pa.
-    coupling_modulus : float
-        eta, Pa; ties the micro-rotation to the macro-rotation (mu/10 in the source).
-    length_scale : float
-        l, m; couple stress M̃ = mu l² G (a tenth of the thickness in the source).
+    coupling_modulus : float, optional
+        eta, Pa; ties the micro-rotation to the macro-rotation (mu/10 in the source). By default mu.
+    length_scale : float, optional
+        l, m; couple stress M̃ = mu l² G. By default a hundredth of the thickness (a tenth in the source).
     """
 
     shear_modulus: float
     lame_lambda: float
-    coupling_modulus: float
-    length_scale: float
+    coupling_modulus: float = BY_DEFAULT
+    length_scale: float = BY_DEFAULT
 
     @property
     def couple_modulus(self) -> float:

@@ -21,7 +21,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from magshell.arrays import FloatArray
-from magshell.materials.law import Material, material_law
+from magshell.materials.law import BY_DEFAULT, Material, material_law
 
 
 def _law(material: Material, U: FloatArray, P: FloatArray, C: FloatArray) -> float:
@@ -64,16 +64,16 @@ class MicropolarStVenantKirchhoff(NamedTuple):
         mu, Pa.
     lame_lambda : float
         lambda, Pa.
-    coupling_modulus : float
-        eta, Pa; ties the micro-rotation to the macro-rotation.
-    length_scale : float
-        l, m; couple stress M̃ = mu l² G.
+    coupling_modulus : float, optional
+        eta, Pa; ties the micro-rotation to the macro-rotation. By default mu.
+    length_scale : float, optional
+        l, m; couple stress M̃ = mu l² G. By default a hundredth of the thickness.
     """
 
     shear_modulus: float
     lame_lambda: float
-    coupling_modulus: float
-    length_scale: float
+    coupling_modulus: float = BY_DEFAULT
+    length_scale: float = BY_DEFAULT
 
     @property
     def couple_modulus(self) -> float:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from magshell.mesh.drawings.polygons import polygon
+from magshell.mesh.drawings.reading import from_drawing
 from magshell.mesh.files import from_cad, read, write
 from magshell.mesh.generators import annulus, cylinder, rectangle, sphere_patch
 from magshell.mesh.mesh import Mesh
 from magshell.mesh.multiblock import blocks
+from magshell.mesh.solids.mid_surface import mid_surface
 from magshell.mesh.triangles import split, triangle_rows
 
 __all__ = [
@@ -14,6 +17,9 @@ __all__ = [
     "blocks",
     "cylinder",
     "from_cad",
+    "from_drawing",
+    "mid_surface",
+    "polygon",
     "read",
     "rectangle",
     "sphere_patch",

@@ -17,7 +17,7 @@ from magshell.errors import InputError, NothingLoads, suggest
 from magshell.magnetics.deformation_gradient_energy import DeformationGradientEnergy
 from magshell.magnetics.field import UniformField
 from magshell.magnetics.micropolar_couple import MicropolarCouple
-from magshell.model import symmetry
+from magshell.model import coupling_limit, symmetry
 from magshell.model.course import Amounts, Course, Loading
 from magshell.model.loads import Applied, Load
 from magshell.model.loads.mass import Mass, whole_mass
@@ -127,6 +127,8 @@ class Model:
         self._check_something_loads()
         for fault in symmetry.broken(self):
             symmetry.logger.warning("%s", fault)
+        for fault in coupling_limit.reached(self.shell, self.coupling, self.largest_field):
+            coupling_limit.logger.warning("%s", fault)
 
     def __repr__(self) -> str:
         parts = (self.shell, self.field, self.coupling, *self.loads, *self.supports)
@@ -161,7 +163,7 @@ class Model:
             where = "material" if part.name == REST else f"region '{part.name}': material"
             raise InputError(
                 f"{where}: coupling_modulus is 0, so the micro-rotation that {worker} works on "
-                "never reaches the deformation; the source takes a tenth of shear_modulus"
+                "never reaches the deformation; leave it out (it is then the shear modulus), or write a larger one"
             )
 
     def _works_on_micro_rotation(self, part: Part, elements: IntArray, loose: AnyArray) -> str:
@@ -205,6 +207,11 @@ class Model:
             The shell has no density.
         """
         return whole_mass(self.shell, self.normals)
+
+    @property
+    def largest_field(self) -> float:
+        """Largest magnitude of the field along the path, T."""
+        return max(abs(amounts.field) for amounts in self._ends) * self.field.magnitude
 
     def _longest_history(self) -> int:
         owners = (self.field, *self.loads, *self.supports)

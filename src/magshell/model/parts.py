@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -11,6 +12,7 @@ from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError, suggest
 from magshell.magnetics.remanence import Remanence
 from magshell.magnetics.remanence.groups import only
+from magshell.materials import BY_DEFAULT, DEFAULTS, Multiple, completed, own_keys
 from magshell.mesh import Mesh
 from magshell.model.region import NO_REMANENCE, OFFSETS, Group, Layer, Region
 from magshell.model.thickness import Thickness
@@ -163,6 +165,29 @@ def heights_of(shell: Made, drafts: Sequence[Draft]) -> list[Heights]:
             _check_heights(shell.mesh, draft, heights)
         found.append(Heights(*heights, *(_offset(draft.offset, height.sum(axis=-1)) for height in heights)))
     return found
+
+
+def completed_drafts(drafts: Sequence[Draft], heights: Sequence[Heights], micro_rotation: bool) -> list[Draft]:
+    """The drafts with what their materials leave to the thickness; of one that varies it is the mean.
+
+    The mean is that of all elements whose layers have the same thickness, so that it does not matter how they are
+    divided into regions.
+    """
+    of_make: dict[tuple[Any, ...], list[FloatArray]] = {}
+    for draft, height in zip(drafts, heights, strict=True):
+        of_make.setdefault(_make(draft), []).append(height.at_points.sum(axis=2).ravel())
+    found = []
+    for draft in drafts:
+        known = [layer.thickness for layer in draft.layers if not callable(layer.thickness)]
+        varies = len(known) < len(draft.layers)
+        whole = float(np.sort(np.concatenate(of_make[_make(draft)])).mean()) if varies else sum(known)
+        made = [replace(one, material=completed(one.material, whole, micro_rotation)) for one in draft.layers]
+        found.append(draft._replace(layers=tuple(made)))
+    return found
+
+
+def _make(draft: Draft) -> tuple[Any, ...]:
+    return tuple(layer.thickness for layer in draft.layers)
 
 
 def parts_of(shell: Made, drafts: Sequence[Draft], heights: Sequence[Heights]) -> tuple[Part, ...]:
@@ -377,15 +402,21 @@ def checked_material(where: str, material: Any, micro_rotation: bool) -> Any:
     if not hasattr(material, "_fields") or not hasattr(material, "problems"):
         raise InputError(f"{where} is {material!r}; it must be a material law with its parameters")
     values = []
+    signed = [name for name, key in own_keys(type(material)).items() if key.kind in ("Number", "Stress")]
     for name, value in zip(material._fields, material, strict=True):
+        if name in DEFAULTS and (value is BY_DEFAULT or isinstance(value, Multiple)):
+            values.append(value)
+            continue
         value = float(value)
         positive_ = name == "shear_modulus" or (name == "length_scale" and micro_rotation)
-        if not np.isfinite(value) or value < 0.0 or (value == 0.0 and positive_):
-            allowed = "positive" if positive_ else "zero or positive"
-            raise InputError(f"{where}: {name} is {value:g}; it must be finite and {allowed}")
+        if not np.isfinite(value) or (name not in signed and (value < 0.0 or (value == 0.0 and positive_))):
+            allowed = "" if name in signed else " and positive" if positive_ else " and zero or positive"
+            raise InputError(f"{where}: {name} is {value:g}; it must be finite{allowed}")
         values.append(value)
         if not micro_rotation and name in ("coupling_modulus", "length_scale") and value > 0.0:
-            raise InputError(f"{where}: {name} is {value:g}; without micro-rotation it must be 0")
+            raise InputError(
+                f"{where}: {name} is {value:g}; without micro-rotation it must be 0: leave it out or write 0"
+            )
     checked = type(material)(*values)
     for problem in checked.problems():
         raise InputError(f"{where}: {problem}")

@@ -12,9 +12,20 @@ import numpy as np
 from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError, suggest
 from magshell.magnetics.remanence import Remanence
+from magshell.materials import completed
 from magshell.mesh import Mesh
 from magshell.model.overall import overall_remanence
-from magshell.model.parts import Draft, Heights, Part, checked_material, drafts_of, heights_of, parts_of, positive
+from magshell.model.parts import (
+    Draft,
+    Heights,
+    Part,
+    checked_material,
+    completed_drafts,
+    drafts_of,
+    heights_of,
+    parts_of,
+    positive,
+)
 from magshell.model.region import NO_REMANENCE, Layer, Region
 from magshell.model.thickness import Thickness
 from magshell.shell.elements import ELEMENTS, QUADRATIC
@@ -33,7 +44,9 @@ class Shell:
     thickness : float or Thickness, optional
         m; see `magshell.thickness` for one that varies. Needed unless there are layers, or regions hold all elements.
     material : Material, optional
-        A law with its parameters, for instance `MicropolarNeoHookean`.
+        A law with its parameters, for instance `MicropolarNeoHookean`. Where they are left out, the coupling modulus
+        is the shear modulus and the length scale a hundredth of the thickness (of each region that is of the
+        material; of a thickness that varies, its mean); without micro-rotation both are 0.
     remanence : Remanence, optional
         Remanent flux density of the undeformed material, see `magshell.remanence`; by default none.
     element : ElementType or str, optional
@@ -88,7 +101,10 @@ class Shell:
         if self.thickness is not None and not callable(self.thickness):
             put(self, "thickness", positive("shell: thickness", self.thickness, "m"))
         if self.material is not None:
-            put(self, "material", checked_material("material", self.material, self.micro_rotation))
+            material = checked_material("material", self.material, self.micro_rotation)
+            if isinstance(self.thickness, float):
+                material = completed(material, self.thickness, self.micro_rotation)
+            put(self, "material", material)
         put(self, "_drafts", drafts_of(self))
         if isinstance(self.element, str):
             if self.element not in ELEMENTS:
@@ -107,6 +123,7 @@ class Shell:
                 f"shell: thickness_stretch is '{self.thickness_stretch}'. {suggest(self.thickness_stretch, STRETCHES)}"
             )
         put(self, "_heights", heights_of(self, self._drafts))
+        put(self, "_drafts", completed_drafts(self._drafts, self._heights, self.micro_rotation))
 
     def __repr__(self) -> str:
         made = [] if self.thickness is None else [f"thickness {in_words(self.thickness)}"]

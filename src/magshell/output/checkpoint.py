@@ -41,7 +41,8 @@ if TYPE_CHECKING:
     from magshell.equations.discretisation import Discretisation
     from magshell.solver.settings import Settings
 
-FORMAT, VERSION = "magshell checkpoint", 1
+# Version 1: of a time when materials had another coupling modulus and length scale by default.
+FORMAT, VERSION = "magshell checkpoint", 2
 FOLDER = "checkpoint"
 UNKNOWN = -1
 # Of any number: products of a few of them are still finite.
@@ -65,11 +66,14 @@ class Origin(NamedTuple):
         Digest of the problem (`magshell.problem.copies`).
     settings : dict of str
         Those of the solver.
+    version : int
+        Of the format.
     """
 
     magshell: str
     problem: str
     settings: dict[str, Any]
+    version: int = VERSION
 
 
 class CheckpointWriter(Observer):
@@ -249,7 +253,7 @@ def _origin(arrays: Mapping[str, np.ndarray]) -> Origin:
     settings = json.loads(str(arrays["settings"]))
     if not isinstance(settings, dict):
         raise Unfit("settings is not a table")
-    return Origin(shortened(str(arrays["magshell"])), str(arrays["problem"]), settings)
+    return Origin(shortened(str(arrays["magshell"])), str(arrays["problem"]), settings, int(arrays["version"]))
 
 
 def _state(arrays: Mapping[str, np.ndarray], prefix: str) -> State:

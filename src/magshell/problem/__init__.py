@@ -44,5 +44,9 @@ def load(source: str | os.PathLike[str], changes: Mapping[str, Any] | None = Non
         found = changed(found, {key: value_of(data) for key, data in changes.items()})
     file = check(parse(found.text, found.name), found.name)
     from magshell.problem.building import build
+    from magshell.problem.building.material import by_default, tell_once
 
-    return build(file, *found)
+    built = build(file, *found)
+    if (note := by_default(file)) is not None:
+        tell_once(f"{found.name}: {note}")
+    return built

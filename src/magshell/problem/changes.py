@@ -10,6 +10,7 @@ from decimal import Decimal
 from typing import Any
 
 from magshell.errors import InputError
+from magshell.materials import MODULI
 from magshell.problem.alternatives import Value, value_of, written
 from magshell.problem.reading import Source, parse
 from magshell.units import FLUX_DENSITY, quoted, shortened
@@ -27,7 +28,7 @@ def changed(source: Source, changes: Mapping[str, Value]) -> Source:
     changes : mapping of str to Value
         By key, as error messages write it: "shell.thickness", "remanence[0].magnitude". A single quantity for the
         vector of a field, remanence or load is its magnitude: the direction stays. Where the flux density is changed,
-        stops that then lie beyond its end are left out.
+        stops that then lie beyond its end are left out; where two moduli are given, those of the file.
 
     Returns
     -------
@@ -52,6 +53,7 @@ def changed(source: Source, changes: Mapping[str, Value]) -> Source:
             put(data, key, value)
         except InputError as error:
             raise InputError(f"{source.name}: {shortened(key)}: {error}") from None
+    _leave_out_moduli(data.get("material"), changes)
     if "field.stops" not in changes and any(key.startswith("field.") for key in changes):
         _leave_out_stops_beyond_the_end(data["field"])
     if changes and "title" not in changes and isinstance(data.get("title", ""), str):
@@ -150,6 +152,15 @@ def _scaled(vector: list[Any], value: Value) -> list[Any]:
     number, _, unit = value.data.partition(" ")
     shares = [Decimal(number) * Decimal(repr((component or 0.0) / length)) for component in components]
     return [f"{written(share)} {unit}" if share else 0 for share in shares]
+
+
+def _leave_out_moduli(material: Any, changes: Mapping[str, Value]) -> None:
+    """Two other moduli than the file has are given in place of its own."""
+    given = [name for name in MODULI if f"material.{name}" in changes]
+    if len(given) == 2 and isinstance(material, dict):
+        for name in MODULI:
+            if name not in given:
+                material.pop(name, None)
 
 
 def _leave_out_stops_beyond_the_end(field: Any) -> None:

@@ -9,9 +9,14 @@ import re
 import tomllib
 from typing import Any
 
+from magshell.mesh import Mesh
+from magshell.mesh.files.writing import msh
 from magshell.problem.building import Problem
+from magshell.problem.building.mesh import made_by_gmsh
 
 FOLDER = "inputs"
+SELECTIONS = ("element_groups", "edge_groups", "node_groups")
+MESH_OF_A_COPY = ("file", "closed")
 # What the path does not depend on, or may change on the way.
 FREE = ("title", "description", "results", "solver")
 
@@ -29,10 +34,19 @@ def alone(problem: Problem) -> tuple[str, dict[str, bytes]]:
     import tomlkit
 
     named = problem.file.files()
-    if not named:
+    meshed = _meshed(problem)
+    if not named and meshed is None:
         return problem.text, {}
     document, copies = tomlkit.parse(problem.text), dict[str, bytes]()
+    if meshed is not None:
+        table, content = meshed
+        copies[table["file"]] = content
+        for key in [key for key in document["mesh"] if key not in table]:
+            document["mesh"].remove(key)
+        document["mesh"].update({key: table[key] for key in MESH_OF_A_COPY})
     for key, name in named:
+        if key == "mesh.file" and meshed is not None:
+            continue
         source = problem.folder / name
         copy = _name(source, source.read_bytes(), copies)
         if name != copy:
@@ -43,10 +57,31 @@ def alone(problem: Problem) -> tuple[str, dict[str, bytes]]:
 def digest(problem: Problem) -> str:
     """Of all that the path depends on, the content of files included: that of a problem is that of its copy."""
     content = tomllib.loads(problem.text)
+    meshed = _meshed(problem)
+    if meshed is not None:
+        table, mesh = meshed
+        content["mesh"] = {**table, "file": hashlib.sha256(mesh).hexdigest()}
     for key, name in problem.file.files():
-        _put(content, key, hashlib.sha256((problem.folder / name).read_bytes()).hexdigest())
+        if key != "mesh.file" or meshed is None:
+            _put(content, key, hashlib.sha256((problem.folder / name).read_bytes()).hexdigest())
     text = json.dumps({key: value for key, value in content.items() if key not in FREE}, sort_keys=True, default=str)
     return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _meshed(problem: Problem) -> tuple[dict[str, Any], bytes] | None:
+    """The table and file of a mesh that gmsh has made, so that a copy has the same mesh wherever it is."""
+    if not made_by_gmsh(problem.file.mesh):
+        return None
+    given = tomllib.loads(problem.text)["mesh"]
+    own = {key: given[key] for key in SELECTIONS if key in given}
+    mesh = problem.model.shell.mesh
+    groups = (mesh.element_groups, mesh.edge_groups, mesh.node_groups)
+    kept = [
+        {name: rows for name, rows in every.items() if name not in own.get(key, {})}
+        for key, every in zip(SELECTIONS, groups, strict=True)
+    ]
+    name = f"{FOLDER}/{pathlib.Path(given.get('file', 'polygon')).stem}.msh"
+    return {**own, "file": name, "closed": True}, msh(Mesh(mesh.points, mesh.elements, *kept), "m")
 
 
 def _name(source: pathlib.Path, content: bytes, copies: dict[str, bytes]) -> str:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection
+from fractions import Fraction
 from functools import partial
 from typing import Annotated, Any, Literal, get_args
 
@@ -16,6 +17,7 @@ from pydantic import AfterValidator, BeforeValidator, StrictBool, ValidationInfo
 from magshell import units
 from magshell.errors import InputError, suggest
 from magshell.magnetics import COUPLINGS
+from magshell.materials import Multiple
 from magshell.model.parts import MOST_LEVELS
 from magshell.model.region import OFFSETS
 from magshell.model.supports import DIMENSION_OF_FIELD
@@ -54,6 +56,24 @@ def dimension_of(kind: Any) -> units.Dimension:
     """Of a single quantity, one of the types below."""
     found: units.Dimension = get_args(kind)[1].func.keywords["dimension"]
     return found
+
+
+_MULTIPLE = re.compile(r"\s*\+?([0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE]([+-]?[0-9]{1,2}))?\s*(\w+)\s*")
+
+
+def _or_multiple(dimension: units.Dimension, symbol: str, *, what: str) -> BeforeValidator:
+    def read(value: object) -> float:
+        if isinstance(value, Multiple):
+            return value
+        found = _MULTIPLE.fullmatch(value) if isinstance(value, str) and len(value) <= 40 else None
+        if found is not None and units.spelled(found[3]).replace("\u00b5", "mu") == symbol:
+            return Multiple(Fraction(found[1]) * Fraction(10) ** int(found[2] or 0))
+        try:
+            return _not_negative(_read(value, dimension))
+        except InputError as error:
+            raise InputError(f'{error}; or write a multiple of the {what}, such as "1 {symbol}"') from None
+
+    return BeforeValidator(read)
 
 
 def _list_of(count: int | tuple[int, ...], what: str) -> BeforeValidator:
@@ -138,6 +158,13 @@ def _levels(value: object) -> object:
     return value
 
 
+def _outline(value: object) -> object:
+    if not isinstance(value, list | tuple) or len(value) < 3:
+        has = f"has {len(value)} corners" if isinstance(value, list | tuple) else "is not a list"
+        raise InputError(f"{has}; expected three or more, each a pair of coordinates X1, X2")
+    return value
+
+
 def not_empty(value: object) -> object:
     """A list or table that must hold something."""
     if value in ([], {}, ()):
@@ -168,8 +195,12 @@ PositiveLength = Annotated[float, _positive_quantity(units.LENGTH)]
 NonNegativeLength = Annotated[float, _quantity(units.LENGTH), AfterValidator(_not_negative)]
 NonNegativeStress = Annotated[float, _quantity(units.STRESS), AfterValidator(_not_negative)]
 PositiveStress = Annotated[float, _positive_quantity(units.STRESS)]
+CouplingModulus = Annotated[Any, _or_multiple(units.STRESS, "mu", what="shear modulus")]
+LengthScale = Annotated[Any, _or_multiple(units.LENGTH, "h", what="thickness")]
 FluxDensity = Annotated[float, _quantity(units.FLUX_DENSITY)]
 PositiveFluxDensity = Annotated[float, _positive_quantity(units.FLUX_DENSITY)]
+Remanence = Annotated[float, _quantity(units.REMANENCE)]
+PositiveRemanence = Annotated[float, _positive_quantity(units.REMANENCE)]
 Force = Annotated[float, _quantity(units.FORCE)]
 Moment = Annotated[float, _quantity(units.MOMENT)]
 Pressure = Annotated[float, _quantity(units.STRESS), AfterValidator(_not_zero)]
@@ -186,7 +217,7 @@ Name = Annotated[str, BeforeValidator(_text_like(_NAME, "letters, digits, spaces
 ProbeName = Annotated[str, BeforeValidator(_text_like(_PROBE_NAME, "letters, digits and _ - ' only"))]
 FileName = Annotated[str, BeforeValidator(_file_name)]
 LengthUnit = Annotated[str, _unit_of(units.LENGTH)]
-FluxDensityUnit = Annotated[str, _unit_of(units.FLUX_DENSITY)]
+RemanenceUnit = Annotated[str, _unit_of(units.REMANENCE)]
 Names = Annotated[tuple[Name, ...], BeforeValidator(_one_or_more)]
 
 Divisions = Annotated[tuple[Count, Count], _list_of(2, "numbers of elements in the two directions")]
@@ -196,6 +227,10 @@ Position = Annotated[tuple[Length, Length, Length], _list_of(3, "coordinates X1,
 FluxVector = Annotated[
     tuple[FluxDensity, FluxDensity, FluxDensity],
     _list_of(3, "components of the flux density along X1, X2, X3"),
+]
+RemanenceVector = Annotated[
+    tuple[Remanence, Remanence, Remanence],
+    _list_of(3, "components of the remanence along X1, X2, X3"),
 ]
 Direction = Annotated[
     tuple[Number, Number, Number], _list_of(3, "components along X1, X2, X3"), AfterValidator(_nonzero)
@@ -216,11 +251,14 @@ AccelerationVector = Annotated[
 ]
 History = Annotated[tuple[Number, ...], BeforeValidator(_one_each("multiplier"))]
 Rotation = Annotated[tuple[Angle, ...], BeforeValidator(_one_each("angle"))]
-FluxDensities = Annotated[tuple[FluxDensity, ...], BeforeValidator(_as_list), AfterValidator(not_empty)]
+Remanences = Annotated[tuple[Remanence, ...], BeforeValidator(_as_list), AfterValidator(not_empty)]
 Angles = Annotated[tuple[Angle, ...], BeforeValidator(_as_list), AfterValidator(not_empty)]
 Positions = Annotated[tuple[Length, ...], BeforeValidator(not_empty)]
 Corner = Annotated[tuple[Length, ...], _list_of((2, 3), "coordinates X1, X2 and, out of the plane, X3")]
 Corners = Annotated[tuple[Corner, Corner, Corner, Corner], _list_of(4, "corners, one after the other")]
+
+PlaneCorner = Annotated[tuple[Length, Length], _list_of(2, "coordinates X1 and X2")]
+Outline = Annotated[tuple[PlaneCorner, ...], BeforeValidator(_outline)]
 
 
 def one_of(names: Collection[str]) -> BeforeValidator:

@@ -221,7 +221,7 @@ def _pattern(where: Sequence[str | int]) -> str:
 def _kinds(place: str) -> list[str]:
     """What the key that chooses the kind of a table at this place may say."""
     from magshell.magnetics.remanence import REMANENCES
-    from magshell.materials import MATERIALS
+    from magshell.materials import MATERIALS, names_of
     from magshell.model.loads import LOADS
     from magshell.model.supports import SUPPORTS
     from magshell.problem import schema
@@ -230,9 +230,9 @@ def _kinds(place: str) -> list[str]:
     if table == "mesh":
         fields = [kind.model_fields.get("generator") for kind in get_args(schema.Mesh)]
         return [get_args(field.annotation)[0] for field in fields if field is not None]
-    registries: dict[str, Mapping[str, Any]] = {
-        "material": MATERIALS, "remanence": REMANENCES, "supports": SUPPORTS, "loads": LOADS,
-    }  # fmt: skip
+    if table == "material":
+        return [name for law in MATERIALS for name in names_of(law)]
+    registries: dict[str, Mapping[str, Any]] = {"remanence": REMANENCES, "supports": SUPPORTS, "loads": LOADS}
     return list(registries[table])
 
 

@@ -14,7 +14,7 @@ from magshell.materials import own_keys
 from magshell.mesh.files import FileMesh
 from magshell.mesh.geometry import centres, unit
 from magshell.mesh.quality import worst
-from magshell.model import symmetry
+from magshell.model import coupling_limit, symmetry
 from magshell.model.supports import Support, SymmetryPlane
 from magshell.model.words import offset_of, span
 from magshell.problem import (
@@ -27,6 +27,7 @@ from magshell.problem import (
     triangle_report,
 )
 from magshell.problem.building import Problem
+from magshell.problem.building.material import by_default
 from magshell.problem.fields import dimension_of
 from magshell.problem.load_report import Strength
 from magshell.shell.unknowns import width
@@ -46,10 +47,13 @@ class Report:
         Label and text of every line, by section.
     warnings : list of str
         What smells of a slip.
+    notes : list of str
+        What is worth knowing besides.
     """
 
     sections: dict[str, list[tuple[str, str]]]
     warnings: list[str]
+    notes: list[str]
 
 
 @dataclass(frozen=True)
@@ -151,6 +155,7 @@ def describe(problem: Problem) -> Report:
             **({"Results": list(_results(problem))} if problem.file.results.model_fields_set else {}),
         },
         warnings=list(_doubts(problem, figures, strong)),
+        notes=[note] if (note := by_default(problem.file)) is not None else [],
     )
 
 
@@ -266,7 +271,7 @@ def _shell(problem: Problem, figures: _Whole) -> Iterator[tuple[str, str]]:
 
 
 def _material(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
-    material = problem.model.shell.material
+    material = problem.model.shell.parts[0].layers[0].material
     yield "law", region_report.law_of(material)
     yield "shear modulus mu", show(material.shear_modulus, STRESS)
     yield "Lamé constant lambda", show(material.lame_lambda, STRESS)
@@ -389,7 +394,9 @@ def _doubts(problem: Problem, figures: _Whole, strong: Strength) -> Iterator[str
         yield f"the bending load is {figures.bending_load:.2g}: the shell will hardly move; check the units"
     elif figures.bending_load > 1e5:
         yield f"the bending load is {figures.bending_load:.2g}: far beyond any experiment; check the units"
+    yield from _other_thickness(problem, figures)
     yield from region_report.doubts(problem)
+    yield from coupling_limit.reached(problem.model.shell, problem.model.coupling, problem.model.largest_field)
     yield from remanence_report.doubts(problem)
     yield from load_report.doubts(problem, strong)
     yield from symmetry_report.doubts(problem)
@@ -401,6 +408,19 @@ def _doubts(problem: Problem, figures: _Whole, strong: Strength) -> Iterator[str
         yield f"element {worst_corner.element} is badly shaped (scaled Jacobian {worst_corner.value:.2g})"
     if not problem.file.probes:
         yield "there are no probes: the history will hold the load only"
+
+
+def _other_thickness(problem: Problem, figures: _Whole) -> Iterator[str]:
+    """A warning if the solid that the mesh was made of is not as thick as the shell."""
+    mesh = problem.model.shell.mesh
+    if not isinstance(mesh, FileMesh) or mesh.origin.thickness is None:
+        return
+    solid = mesh.origin.thickness
+    if max(figures.thickest - solid, solid - figures.thinnest) > 0.01 * solid:
+        yield (
+            f"the solid in {mesh.origin.file} is {show(solid, LENGTH)} thick, the shell "
+            f"{show(figures.thinnest, LENGTH)}: check shell.thickness"
+        )
 
 
 def _doubts_of(part: _Figures) -> Iterator[str]:
@@ -416,5 +436,5 @@ def _doubts_of(part: _Figures) -> Iterator[str]:
             yield f"the shear modulus is {show(modulus, STRESS)}: softer than a gel; check material.shear_modulus"
         if modulus > 1e10:
             yield f"the shear modulus is {show(modulus, STRESS)}: stiffer than magnesium; check material.shear_modulus"
-    if part.poissons_ratio > 0.4999:
+    if part.poissons_ratio > 0.4999 + 1e-9:
         yield f"Poisson's ratio is {part.poissons_ratio:.6g}: nearly incompressible, slow to converge"

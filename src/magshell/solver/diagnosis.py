@@ -12,6 +12,7 @@ Three things end a path other than the physics of the body:
   there is no stable equilibrium. The load factor turns there, and beyond it the couple falls again: it is measured
   at the first limit point of the stage too. Well below the limit the micro-rotation may already be so far from the
   rotation of the material that it gives way first.
+* *A material at the limit of its stretch*, for laws that have one (`extension.py`).
 * *An element turned inside out*, where det F is far from one at its points already.
 
 Each is measured in the last state and where the load factor turned first, since the states after that point are not
@@ -35,6 +36,7 @@ from magshell.magnetics.law import OMEGA
 from magshell.model.course import Loading
 from magshell.model.parts import REST
 from magshell.shell.state import State
+from magshell.solver.extension import Extension, extension
 
 # Angle (degrees) turned within an element: what is safe, and beyond which the mesh is a likely cause.
 SAFE = 30.0
@@ -91,15 +93,19 @@ class Measures(NamedTuple):
     turn: Turn
     squash: Squash
     couple: Couple | None
+    extension: Extension | None = None
 
 
 def measure(discretisation: Discretisation, state: State, loading: Loading) -> Measures:
-    """Bending per element, det F and the couple in a state."""
+    """Bending per element, det F, the couple and the extension in a state."""
     F = Converged(discretisation, state, loading).fields.F
     determinants = np.linalg.det(F).min(axis=(1, 2))
     worst = int(determinants.argmin())
     return Measures(
-        _turn(discretisation, state), Squash(float(determinants[worst]), worst), _couple(discretisation, state, loading)
+        _turn(discretisation, state),
+        Squash(float(determinants[worst]), worst),
+        _couple(discretisation, state, loading),
+        extension(discretisation, F),
     )
 
 
@@ -143,15 +149,17 @@ def _worse(one: Measures, other: Measures) -> Measures:
     turn = max(one.turn, other.turn, key=lambda turn: turn.angle)
     squash = min(one.squash, other.squash, key=lambda squash: squash.determinant)
     couples = [couple for couple in (one.couple, other.couple) if couple is not None]
+    extensions = [found for found in (one.extension, other.extension) if found is not None]
+    extended = max(extensions, default=None)
     if not couples:
-        return Measures(turn, squash, None)
+        return Measures(turn, squash, None, extended)
     couple = max(couples, key=lambda couple: couple.ratio)
-    return Measures(turn, squash, couple._replace(ahead=max(couple.ahead for couple in couples)))
+    return Measures(turn, squash, couple._replace(ahead=max(couple.ahead for couple in couples)), extended)
 
 
 def _causes(discretisation: Discretisation, last: Measures, worst: Measures) -> Iterator[str]:
     """The causes, from the measures in the last state and the worst ones: limit, mesh, soft coupling, squashing."""
-    turn, squash, couple = worst
+    turn, squash, couple, extended = worst
     limited = couple is not None and (couple.ratio > NEAR_LIMIT or couple.ahead > RUNNING_AHEAD)
     if couple is not None and limited:
         yield (
@@ -178,6 +186,13 @@ def _causes(discretisation: Discretisation, last: Measures, worst: Measures) -> 
             f"larger coupling_modulus than {couple.modulus / 1e3:.4g} kPa"
             f"{_of_part(discretisation, couple.element)}, or a weaker field, may help."
         )
+    if extended is not None and extended.share > NEAR_LIMIT:
+        yield (
+            f"the material is stretched to {100 * extended.share:.0f} % of the limit of its law in "
+            f"{_place(discretisation, extended.element)}"
+            f"{_when(extended.share, last.extension and last.extension.share)}. Take a larger extension_limit, or "
+            "weaker loads."
+        )
     if squash.determinant < SQUASHED:
         yield (
             f"the material is squashed: det F is {squash.determinant:.2g} in {_place(discretisation, squash.element)}"
@@ -191,8 +206,10 @@ def _when(worst: float, last: float | None) -> str:
 
 
 def _figures(measured: Measures) -> str:
-    turn, squash, couple = measured
+    turn, squash, couple, extended = measured
     figures = f"elements turn by at most {turn.angle:.0f}°, det F is at least {squash.determinant:.2g}"
+    if extended is not None:
+        figures += f", the stretch is at most {100 * extended.share:.0f} % of the limit of its law"
     if couple is None:
         return figures
     return f"{figures}, the couple is at most {100 * couple.ratio:.0f} % of what the micro-rotation transfers"

@@ -20,6 +20,7 @@ from magshell.linalg import Factorisation, LinearSolver, SingularMatrix
 from magshell.model.course import Course
 from magshell.shell.state import State
 from magshell.solver.constraints import Constraint, NoRoot
+from magshell.solver.extension import beyond
 from magshell.solver.settings import Settings
 
 HALVINGS = 4
@@ -126,7 +127,7 @@ def newton(
         residuals.append(residual)
         report(len(residuals) - 1, kind, residual)
         if not np.isfinite(residual):
-            raise StepFailure("the residual is not finite")
+            raise StepFailure(f"the residual is not finite{beyond(discretisation, trial.state)}")
         if residual <= settings.tolerance or _stalled(residuals):
             return Solution(trial, assembly, residuals, increment, factors)
         if len(residuals) > settings.max_iterations:
@@ -158,7 +159,8 @@ def newton(
             )
             try:
                 assembly = system.assemble(trial)
-                break
+                if np.isfinite(assembly.worst[1]):
+                    break
             except InvertedElement as inverted:
                 if halving == HALVINGS:
                     raise _inverted(inverted) from None

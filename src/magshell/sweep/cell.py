@@ -47,7 +47,8 @@ def solve_cell(name: str, text: str, folder: str, directory: str, stop: str) -> 
         WAITING if it was stopped.
     """
     path = pathlib.Path(directory)
-    logging.getLogger("magshell.model.symmetry").addHandler(logging.NullHandler())  # the sweep has said it of all cells
+    for part in ("magshell.model", "magshell.problem"):  # the sweep has said it of all cells
+        logging.getLogger(part).addHandler(logging.NullHandler())
     try:
         _solve(Source(name, text, pathlib.Path(folder)), path, StopWhenAsked(pathlib.Path(stop)))
     except KeyboardInterrupt:

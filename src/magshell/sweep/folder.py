@@ -13,9 +13,11 @@ from collections.abc import Sequence
 
 from magshell.errors import InputError
 from magshell.files import read_at_most, refuse_somebodys, write_atomically
+from magshell.problem.building.material import WRITTEN
 from magshell.problem.reading import MOST_BYTES, Source
 
-_VERSION = 1
+# Version 1: of a time when materials had another coupling modulus and length scale by default.
+_VERSION = 2
 
 
 class SweepFolder:
@@ -75,19 +77,32 @@ class SweepFolder:
             raise InputError(f"{error.filename}: cannot be read: {error.strerror}") from None
         except (ValueError, RecursionError) as error:
             raise InputError(f"{self.definition}: is damaged: {error}; start the sweep again") from None
-        if definition.get("version") != _VERSION:
-            found = definition.get("version")
-            raise InputError(f"{self.definition}: version: is {found!r}; this magshell reads version {_VERSION}")
+        if (version := definition.get("version")) not in (1, _VERSION):
+            raise InputError(
+                f"{self.definition}: version: is {version!r}; this magshell reads versions 1 and {_VERSION}"
+            )
         name, folder, settings = (definition.get(key) for key in ("problem", "folder", "set"))
         if not isinstance(name, str) or not isinstance(folder, str):
             raise InputError(f"{self.definition}: problem and folder: are not both text; start the sweep again")
         if not isinstance(settings, list) or not all(isinstance(text, str) for text in settings):
             raise InputError(f"{self.definition}: set: is not a list of texts; start the sweep again")
-        return Source(name, text, pathlib.Path(folder)), settings
+        return Source(name, text if version == _VERSION else _as_it_was(text), pathlib.Path(folder)), settings
 
     def cell(self, name: str) -> pathlib.Path:
         """Folder of the results of a cell."""
         return self.cells / name
+
+
+def _as_it_was(text: str) -> str:
+    """A problem file with the defaults of version 1 written out."""
+    import tomlkit
+
+    document = tomlkit.parse(text)
+    material, shell = document.get("material", {}), document.get("shell", {})
+    if shell.get("micro_rotation", True):
+        for key, value in WRITTEN.items():
+            material.setdefault(key, value)
+    return tomlkit.dumps(document)
 
 
 def _definition(source: Source, settings: Sequence[str]) -> str:

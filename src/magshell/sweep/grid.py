@@ -8,9 +8,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from magshell.errors import InputError, NothingLoads
-from magshell.model import symmetry
+from magshell.model import coupling_limit, symmetry
 from magshell.problem.alternatives import Setting, Value
 from magshell.problem.building import build
+from magshell.problem.building.material import by_default
 from magshell.problem.changes import changed, label
 from magshell.problem.reading import MOST_ERRORS, Source, check, parse
 
@@ -34,8 +35,10 @@ class Cell:
     probes : tuple of str
     undeformed : bool
         Nothing acts on the shell, so there is nothing to solve.
-    broken : tuple of str
-        What breaks its mirror planes.
+    doubts : tuple of str
+        What breaks its mirror planes, and where the field's couple is too strong.
+    note : str or None
+        What its file leaves to defaults that were others.
     """
 
     number: int
@@ -44,7 +47,8 @@ class Cell:
     source: Source
     probes: tuple[str, ...]
     undeformed: bool = False
-    broken: tuple[str, ...] = ()
+    doubts: tuple[str, ...] = ()
+    note: str | None = None
 
     @property
     def name(self) -> str:
@@ -93,12 +97,12 @@ def grid(
 
 
 def doubts(cells: Sequence[Cell]) -> list[str]:
-    """What breaks the mirror planes of the cells, each once, with the first of them."""
+    """What is doubtful of the cells, each once, with the first of them."""
     where: dict[str, list[str]] = {}
     for cell in cells:
-        for fault in cell.broken:
+        for fault in cell.doubts:
             where.setdefault(fault, []).append(f"cell {cell.number}: {cell.label}")
-    return _lines(where, len(cells), "symmetry", "warnings")
+    return _lines(where, len(cells), "sweep", "warnings")
 
 
 def _cell(number: int, words: str, changes: dict[str, Value], source: Source) -> Cell:
@@ -109,7 +113,8 @@ def _cell(number: int, words: str, changes: dict[str, Value], source: Source) ->
         model = build(file, *found).model
     except NothingLoads:
         return replace(cell, undeformed=True)
-    return replace(cell, broken=tuple(symmetry.broken(model)))
+    weak = coupling_limit.reached(model.shell, model.coupling, model.largest_field)
+    return replace(cell, doubts=(*symmetry.broken(model), *weak), note=by_default(file))
 
 
 def _lines(faults: dict[str, list[str]], count: int, name: str, what: str = "errors") -> list[str]:

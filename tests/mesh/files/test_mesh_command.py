@@ -38,6 +38,8 @@ thickness = "0.2 mm"
 law = "micropolar-neo-hookean"
 shear_modulus = "100 kPa"
 lame_lambda = "2 MPa"
+coupling_modulus = "0.1 mu"
+length_scale = "0.1 h"
 
 [[remanence]]
 kind = "constant"
@@ -205,7 +207,13 @@ TABLES = {
     "key of a generator": ('file = "a.msh"\nelements = [1, 2]', "mesh.elements: is an unknown key"),
     "not a switch": ('file = "a.msh"\nsecond_order = 1', "mesh.second_order: '1' is neither true nor false"),
     "no such file": ('file = "two-plates.msh"\nunit = "mm"', "two-plates.msh: there is no such file. Did you mean"),
-    "geometry": ('file = "two-plates.geo"\nunit = "mm"', "mesh.file: two-plates.geo: is a geometry, not a mesh."),
+    "size": ('file = "two-plates-41.msh"\nunit = "mm"\nsize = "1 mm"', "mesh.size: two-plates-41.msh is a mesh, whose"),
+    "layers": (
+        'file = "two-plates-41.msh"\nholes = "cut"',
+        "mesh.holes: is for drawings (.dxf, .svg, .csv), and two-pl",
+    ),
+    "raised drawing": ('file = "a.dxf"\nsecond_order = true', "mesh.second_order: makes no sense for a drawing such"),
+    "no solid": ('file = "two-plates-41.msh"\nunit = "mm"\nmid_surface = true', "is not the closed skin of a solid"),
     "taken": (
         'file = "two-plates-41.msh"\nunit = "mm"\nedge_groups.tip = { x1 = 0 }',
         "mesh.edge_groups.tip: Two groups have the name 'tip'",

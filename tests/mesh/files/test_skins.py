@@ -198,6 +198,8 @@ thickness = "0.2 mm"
 law = "micropolar-neo-hookean"
 shear_modulus = "100 kPa"
 lame_lambda = "2 MPa"
+coupling_modulus = "0.1 mu"
+length_scale = "0.1 h"
 
 [[remanence]]
 kind = "constant"

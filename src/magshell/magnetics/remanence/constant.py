@@ -52,8 +52,8 @@ def _fault(
 CONSTANT = Way(
     _from_keys,
     {
-        "vector": Key("FluxVector", "The remanent flux density; or instead", "magnitude and direction"),
-        "magnitude": Key("PositiveFluxDensity", "its magnitude, and"),
+        "vector": Key("RemanenceVector", "The remanent flux density; or instead", "magnitude and direction"),
+        "magnitude": Key("PositiveRemanence", "its magnitude, and"),
         "direction": Key("Direction", "its direction."),
     },
     _words,

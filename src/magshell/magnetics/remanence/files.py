@@ -58,11 +58,11 @@ def from_file(
         No such file; no such column; a line with a number that is none, too few or too many; an unknown unit, or
         another one in a heading; a place with two values.
     """
-    tesla = factor(flux_density_unit, units.FLUX_DENSITY)
+    tesla = factor(flux_density_unit, units.REMANENCE)
     path = pathlib.Path(file)
     if path.suffix == ".npy":
         return per_element(tesla * read_array(path))
-    flux = Columns(FLUX, units.FLUX_DENSITY, flux_density_unit, "flux_density_unit")
+    flux = Columns(FLUX, units.REMANENCE, flux_density_unit, "flux_density_unit")
     table = read_table(path, flux, Columns(PLACE, units.LENGTH, length_unit, "length_unit"))
     if table.optional is None:
         return per_element(tesla * table.wanted)
@@ -181,7 +181,7 @@ FROM_FILE = Way(
             "CSV with the columns `b1,b2,b3` and, if its rows are places, `x1,x2,x3`; without them one row per "
             "element. Or a `.npy` array (elements, 3).",
         ),
-        "flux_density_unit": Key("FluxDensityUnit", 'Unit of the vectors, such as `"mT"`.'),
+        "flux_density_unit": Key("RemanenceUnit", 'Unit of the vectors, such as `"mT"`.'),
         "length_unit": Key("LengthUnit", "Unit of the places."),
         "tolerance": Key("PositiveLength", "Largest distance from the centre of an element to its place."),
     },

@@ -126,7 +126,7 @@ PROFILE = Way(
         "along": Key("Direction", "Direction of the coordinate $s$."),
         "positions": Key("Positions", "Values of $s$, rising."),
         "magnitude": Key(
-            "FluxDensities", "At the positions, or one for all; linear between, constant beyond. May change sign."
+            "Remanences", "At the positions, or one for all; linear between, constant beyond. May change sign."
         ),
         "direction": Key("Direction", "Of the remanence at angle 0."),
         "angle": Key(

@@ -114,7 +114,7 @@ def in_template(
         return template(shape(*(own[key] for key in keys)), magnitude, direction)
 
     about = {
-        "magnitude": Key("PositiveFluxDensity", "Magnitude that the part keeps."),
+        "magnitude": Key("PositiveRemanence", "Magnitude that the part keeps."),
         "direction": Key("Direction", "Of the uniform magnetising field, with the part in the shape below."),
     }
 

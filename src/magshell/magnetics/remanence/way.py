@@ -9,7 +9,7 @@ from typing import Any
 from magshell.keys import Key
 from magshell.magnetics.remanence.vectors import Remanence
 
-MAGNITUDE = Key("PositiveFluxDensity", "Its magnitude.")
+MAGNITUDE = Key("PositiveRemanence", "Its magnitude.")
 TOWARDS = Key("Direction", "Where its component along this direction would be negative, the sign is flipped.")
 
 

@@ -62,6 +62,8 @@ class Joined:
         In mm.
     gap : float or None
         Distance of ends that are joined, mm; None: 1e-4 of the size.
+    merging : bool
+        Whether lines in a row and in one direction become one.
 
     Attributes
     ----------
@@ -79,8 +81,9 @@ class Joined:
         Nothing is drawn, or more than two lines of a layer meet at an end.
     """
 
-    def __init__(self, pieces: list[Piece], gap: float | None) -> None:
+    def __init__(self, pieces: list[Piece], gap: float | None, merging: bool = False) -> None:
         self.notes: list[str] = []
+        self._merging = merging
         if not pieces:
             raise InputError("draws no lines")
         self.size = float(np.linalg.norm(np.ptp(np.concatenate([piece.points for piece in pieces]), axis=0)))
@@ -103,7 +106,7 @@ class Joined:
         self.open = [chain for chain in chains if not chain.closed]
         if self._widest > EXACT * self.size:
             self.notes.append(
-                f"{self._gaps} gap{'s' * (self._gaps > 1)} between ends of lines closed, at most {self._widest:.2g} mm wide"
+                f"{self._gaps} gap{'s' * (self._gaps > 1)} between ends of lines closed, up to {self._widest:.2g} mm"
             )
 
     def _long_enough(self, pieces: list[Piece]) -> list[Piece]:
@@ -207,7 +210,8 @@ class Joined:
             at = int(partner[far])
             if at < 0 or seen[at // 2]:
                 break
-        return Chain(tuple(straightened(self._without_gaps(pieces, closed=at >= 0), self.size)))
+        walked = self._without_gaps(pieces, closed=at >= 0)
+        return Chain(tuple(straightened(walked, self.size) if self._merging else walked))
 
     def _without_gaps(self, pieces: list[Piece], closed: bool) -> list[Piece]:
         """Pieces moved so that each begins where the one before ends: half way between the two ends."""

@@ -13,7 +13,7 @@ from magshell.mesh.drawings.joining import Chain
 from magshell.mesh.drawings.nesting import NEAR, Plan
 from magshell.mesh.drawings.pieces import Piece
 from magshell.mesh.files.assembling import FileMesh
-from magshell.mesh.files.cad import ATTEMPTS, MANY, QUASI_STRUCTURED, Attempt, best, set_size
+from magshell.mesh.files.cad import ATTEMPTS, MANY, QUASI_STRUCTURED, Attempt, best, use_size
 from magshell.mesh.files.session import session
 
 SPAN = np.radians(60.0)
@@ -29,7 +29,7 @@ def mesh_plan(plan: Plan, name: str, size: float) -> FileMesh:
     with session(name) as gmsh:
         pencil = _Pencil(gmsh, plan, size)
         pencil.draw()
-        set_size(gmsh, size, "mm", "")
+        use_size(gmsh, size, plan.area, "mm")
         attempts: tuple[Attempt, ...] = ATTEMPTS
         if plan.area > MANY * size**2:
             attempts = tuple(sorted(attempts, key=lambda each: (not each.recombine, each == QUASI_STRUCTURED)))
@@ -118,6 +118,7 @@ class _Pencil:
 
     def _curves(self, chain: Chain) -> list[int]:
         tags: list[int] = []
+        self._tags.clear()  # with its surface, a hole takes its points away
         for run in self._runs(chain):
             if len(run) > 1:
                 points = np.concatenate([*(piece.points[:-1] for piece in run), run[-1].points[-1:]])
@@ -175,14 +176,11 @@ class _Pencil:
 
     def _splines(self, points: FloatArray) -> list[int]:
         """A curve through points; a closed one in three pieces that meet smoothly."""
-        tangents = _tangents(points)
         parts = 3 if (points[0] == points[-1]).all() else 1
         ends = np.linspace(0, len(points) - 1, parts + 1).round().astype(int)
         tags = []
         for begin, end in pairwise(ends.tolist()):
-            inside = [self._point(point) for point in points[begin : end + 1]]
-            along = [*tangents[begin], 0.0, *tangents[end], 0.0]
-            tags.append(self.gmsh.model.occ.addSpline(inside, tangents=along))
+            tags.append(self.gmsh.model.occ.addSpline([self._point(point) for point in points[begin : end + 1]]))
         return tags
 
 
@@ -191,17 +189,3 @@ def _turn(one: Piece, other: Piece) -> float:
     ahead, following = one.points[-1] - one.points[-2], other.points[1] - other.points[0]
     across = ahead[0] * following[1] - ahead[1] * following[0]
     return float(abs(np.arctan2(across, ahead @ following)))
-
-
-def _tangents(points: FloatArray) -> FloatArray:
-    """Of parabolas through three points in a row, (k, 2); around the end of a closed smooth curve."""
-    chords = np.diff(points, axis=0)
-    length = np.linalg.norm(chords, axis=1, keepdims=True)
-    slope = chords / length
-    inside = (slope[:-1] * length[1:] + slope[1:] * length[:-1]) / (length[1:] + length[:-1])
-    first, last = 2.0 * slope[0] - inside[0], 2.0 * slope[-1] - inside[-1]
-    if (points[0] == points[-1]).all() and slope[0] @ slope[-1] > np.cos(SMOOTH):
-        first = last = (slope[-1] * length[0] + slope[0] * length[-1]) / (length[0] + length[-1])
-    every = np.concatenate([[first], inside, [last]])
-    result: FloatArray = every / np.linalg.norm(every, axis=1, keepdims=True)
-    return result

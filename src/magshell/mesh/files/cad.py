@@ -193,6 +193,17 @@ def set_size(gmsh: Any, size: float | None, unit: str, suffix: str) -> float:
     area = _area(gmsh)
     if size is None:
         size = float(f"{math.sqrt(area / DEFAULT_ELEMENTS):.2g}")
+    return use_size(gmsh, size, area, unit)
+
+
+def use_size(gmsh: Any, size: float, area: float, unit: str) -> float:
+    """Make elements of one size, in the file's unit, on an area; about how many elements that makes.
+
+    Raises
+    ------
+    InputError
+        So small that nobody could solve on the mesh.
+    """
     if area > MOST_ELEMENTS * size**2:
         least = math.sqrt(area / MOST_ELEMENTS)
         raise InputError(

@@ -12,7 +12,7 @@ from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.mesh.drawings.reading import chosen_size
 from magshell.mesh.files.assembling import FileMesh
-from magshell.mesh.files.cad import ATTEMPTS, best, name_entity, set_size
+from magshell.mesh.files.cad import ATTEMPTS, best, name_entity, use_size
 from magshell.mesh.files.session import session
 from magshell.mesh.solids.facing import along_all, facing
 from magshell.mesh.solids.pairing import Sides, sides_of
@@ -64,7 +64,7 @@ def mid_surface_of_body(
         for tag in upper:
             gmsh.model.addPhysicalGroup(2, [tag], name=f"{_FACE}{tag}")
         area = float(skin.areas[sides.upper].sum())
-        set_size(gmsh, chosen_size(size, area) / millimetres, unit, "")
+        use_size(gmsh, chosen_size(size, area) / millimetres, area / millimetres**2, unit)
         mesh = best(gmsh, name, unit, False, ATTEMPTS)
         return _moved(gmsh, mesh, sides, outward, 1e-3 * millimetres), sides
 

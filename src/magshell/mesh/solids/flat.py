@@ -41,7 +41,7 @@ def flat_mesh(skin: Skin, sides: Sides, name: str, size: float | None) -> FileMe
     triangle, side = np.nonzero(inside[:, None] & ~inside[beyond])
     begin, end = skin.triangles[triangle, side], skin.triangles[triangle, (side + 1) % 3]
     pieces = [Piece(local[[a, b], :2], LAYER) for a, b in zip(begin.tolist(), end.tolist(), strict=True)]
-    mesh = meshed(planned(Joined(pieces, EXACT * skin.size), None), name, size)
+    mesh = meshed(planned(Joined(pieces, EXACT * skin.size, merging=True), None), name, size)
     points = mesh.points.copy()
     points[:, 2] = 1e-3 * height
     return replace(mesh, points=points @ frame)

@@ -201,10 +201,12 @@ def _boundary(path: pathlib.Path, name: str) -> tuple[FloatArray, IntArray]:
     for cells in mesh.cells:
         for face in FACES.get(cells.type, ()):
             corners = np.asarray(cells.data, dtype=np.int64)[:, list(face)]
-            quads.append(corners if len(face) == 4 else corners[:, [0, 1, 2, 2]])
+            quads.append(corners if len(face) == 4 else np.column_stack([corners, np.full(len(corners), MISSING)]))
     if not quads:
         raise InputError(f"{name}: meshio finds no tetrahedra, hexahedra, wedges or pyramids in it")
     every = np.concatenate(quads)
     _, first, sharing = np.unique(np.sort(every, axis=1), axis=0, return_index=True, return_counts=True)
     points = np.asarray(mesh.points, dtype=np.float64)
-    return points, _split(every[np.sort(first[sharing == 1])])
+    outer = every[np.sort(first[sharing == 1])]
+    outer[:, 3] = np.where(outer[:, 3] == MISSING, outer[:, 2], outer[:, 3])
+    return points, _split(outer)

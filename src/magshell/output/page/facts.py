@@ -23,6 +23,8 @@ PEOPLE = {
     "neo hookean": "neo-Hookean",
     "st venant kirchhoff": "St. Venant–Kirchhoff",
     "mooney rivlin": "Mooney–Rivlin",
+    "gent": "Gent",
+    "yeoh": "Yeoh",
 }
 
 

@@ -18,6 +18,7 @@ from magshell.model.stages import Stage
 from magshell.model.supports import SUPPORTS, Support
 from magshell.problem import schema
 from magshell.problem.building.located import at
+from magshell.problem.building.material import EARLIER
 from magshell.problem.building.mesh import build_mesh
 from magshell.problem.building.shell import build_shell
 from magshell.problem.schema import ProblemFile
@@ -102,6 +103,16 @@ def build(file: ProblemFile, source: str, text: str = "", folder: pathlib.Path =
         settings = Settings(**file.solver.model_dump(exclude_none=True))
         make_solver(settings.linear_solver)
         return Problem(source, file, model, settings, text, folder)
+
+
+def with_earlier_defaults(problem: Problem) -> Problem:
+    """The problem as it was built when checkpoints had version 1, without regions; its text stays as it is."""
+    material = problem.file.material
+    if material is None:
+        return problem
+    given = {key: multiple for key, multiple in EARLIER.items() if getattr(material, key) is None}
+    file = problem.file.model_copy(update={"material": material.model_copy(update=given)})
+    return build(file, problem.source, problem.text, problem.folder)
 
 
 def _field(table: schema.FieldTable) -> UniformField:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import pathlib
+import re
 
 import numpy as np
 
 from magshell.errors import InputError
-from magshell.mesh import Mesh, annulus, blocks, cylinder, read, rectangle, sphere_patch
+from magshell.mesh import Mesh, annulus, blocks, cylinder, polygon, rectangle, sphere_patch
+from magshell.mesh.opening import Wishes, meshes, open_mesh
 from magshell.problem import schema
 from magshell.problem.building.located import at
 from magshell.problem.schema.mesh import Generated
@@ -36,13 +38,33 @@ def build_mesh(table: schema.Mesh, folder: pathlib.Path) -> Mesh:
 
 def _read(table: schema.MeshFile, folder: pathlib.Path) -> Mesh:
     try:
-        mesh = read(folder / table.file, table.unit, table.second_order, table.closed)
+        mesh = open_mesh(folder / table.file, wishes_of(table))
     except InputError as error:
-        of_unit = str(error).startswith("unit: ")
-        raise InputError(f"mesh.{error}" if of_unit else f"mesh.file: {error}") from None
+        of_key = re.match(r"(unit|size|mid_surface|second_order|closed|holes|gap): ", str(error))
+        raise InputError(f"mesh.{error}" if of_key else f"mesh.file: {error}") from None
     if len(mesh.elements) > MOST_ELEMENTS:
         raise InputError(f"mesh.file: {table.file} has {len(mesh.elements)} elements; at most {MOST_ELEMENTS}")
     return mesh
+
+
+def wishes_of(table: schema.MeshFile) -> Wishes:
+    """What a table asks for."""
+    return Wishes(
+        unit=table.unit,
+        size=table.size,
+        second_order=table.second_order,
+        closed=table.closed,
+        mid_surface=table.mid_surface,
+        holes=table.holes,
+        gap=table.gap,
+    )
+
+
+def made_by_gmsh(table: schema.Mesh) -> bool:
+    """Whether gmsh makes the mesh of a table whenever it is built."""
+    if isinstance(table, schema.MeshFile):
+        return meshes(table.file, wishes_of(table))
+    return isinstance(table, schema.Polygon)
 
 
 def _generated(table: Generated) -> Mesh:
@@ -59,6 +81,8 @@ def _generated(table: Generated) -> Mesh:
         case schema.SpherePatch():
             _bounded(table.elements)
             return sphere_patch(table.radius, table.polar, table.azimuth, table.elements)
+        case schema.Polygon():
+            return polygon(table.corners, table.size, table.holes)
         case schema.Blocks():
             divisions = {name: table.divisions(name) for name in table.blocks}
             _bounded(*divisions.values())

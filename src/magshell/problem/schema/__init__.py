@@ -13,7 +13,7 @@ from typing import Annotated, Any, ClassVar, Union, get_args
 from pydantic import BeforeValidator, Field, create_model, model_validator
 
 from magshell.magnetics.remanence import REMANENCES
-from magshell.materials import MATERIALS, keys_of
+from magshell.materials import MATERIALS, keys_of, names_of
 from magshell.model.loads import LOADS
 from magshell.model.supports import SUPPORTS
 from magshell.problem import fields as f
@@ -28,6 +28,7 @@ from magshell.problem.schema.mesh import (
     Elements,
     Mesh,
     MeshFile,
+    Polygon,
     Rectangle,
     Selection,
     SpherePatch,
@@ -52,6 +53,7 @@ __all__ = [
     "MaterialTable",
     "Mesh",
     "MeshFile",
+    "Polygon",
     "ProblemFile",
     "Rectangle",
     "RegionTable",
@@ -130,22 +132,22 @@ class ProblemFile(Table):
 
 def material_tables() -> dict[str, type[Table]]:
     """The tables of all material laws, by name."""
-    return {name: table_of("law", name, law, keys_of(law), MaterialTable) for name, law in MATERIALS.items()}
+    return {name: table_of("law", names_of(name), law, keys_of(law), MaterialTable) for name, law in MATERIALS.items()}
 
 
 def remanence_tables() -> dict[str, type[Table]]:
     """The tables of all ways to magnetise, by kind."""
-    return {name: table_of("kind", name, way.make, way.keys, RemanenceTable) for name, way in REMANENCES.items()}
+    return {name: table_of("kind", (name,), way.make, way.keys, RemanenceTable) for name, way in REMANENCES.items()}
 
 
 def load_tables() -> dict[str, type[Table]]:
     """The tables of all loads, by kind."""
-    return {name: table_of("kind", name, load, load.keys, LoadTable) for name, load in LOADS.items()}
+    return {name: table_of("kind", (name,), load, load.keys, LoadTable) for name, load in LOADS.items()}
 
 
 def support_tables() -> dict[str, type[Table]]:
     """The tables of all supports, by kind."""
-    return {name: table_of("kind", name, one, one.all_keys(), SupportTable) for name, one in SUPPORTS.items()}
+    return {name: table_of("kind", (name,), one, one.all_keys(), SupportTable) for name, one in SUPPORTS.items()}
 
 
 def problem_file() -> type[ProblemFile]:

@@ -17,14 +17,16 @@ KINDS = {name: kind for name, kind in vars(fields).items() if get_origin(kind) i
 
 
 def table_of(
-    choice: str, name: str, make: Callable[..., Any], keys: Mapping[str, Key], base: type[Table]
+    choice: str, names: tuple[str, ...], make: Callable[..., Any], keys: Mapping[str, Key], base: type[Table]
 ) -> type[Table]:
     """The table of something that describes its keys.
 
     Parameters
     ----------
-    choice, name : str
-        Key that chooses among the tables, and what it says for this one.
+    choice : str
+        Key that chooses among the tables.
+    names : tuple of str
+        What it may say for this one.
     make : callable
         A class or function whose parameters are the keys, with their defaults.
     keys : mapping of str to Key
@@ -36,10 +38,10 @@ def table_of(
     TypeError
         A description names no kind of value; keys and parameters differ.
     """
-    known = defaults(make)
+    name, known = names[0], defaults(make)
     if not fits(make, keys):
         raise TypeError(f"{name}: its keys ({', '.join(keys)}) are not the parameters of {make}")
-    columns: dict[str, Any] = {choice: (Literal[name], ...)}
+    columns: dict[str, Any] = {choice: (Literal[names], ...)}
     for key, description in keys.items():
         if description.kind not in KINDS:
             near = suggest(description.kind, KINDS)

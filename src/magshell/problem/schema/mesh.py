@@ -116,16 +116,29 @@ class SpherePatch(_Groups):
     elements: f.Divisions
 
 
+class Polygon(_Groups):
+    """Polygon in the plane X1-X2 with holes, meshed by gmsh; edge groups side-1, side-2, ..., hole-1, ..."""
+
+    generator: Literal["polygon"]
+    corners: f.Outline
+    holes: tuple[f.Outline, ...] = ()
+    size: f.PositiveLength | None = None
+
+
 class MeshFile(_Groups):
-    """A mesh from a file, with the groups that the file names."""
+    """A mesh from a file, or of a drawing or a solid in one, with the groups that the file names."""
 
     file: f.FileName
     unit: f.LengthUnit | None = None
+    size: f.PositiveLength | None = None
+    mid_surface: StrictBool = False
+    holes: f.Names = ()
+    gap: f.PositiveLength | None = None
     second_order: StrictBool = False
     closed: StrictBool = False
 
 
-Generated: TypeAlias = Rectangle | Annulus | Blocks | Cylinder | SpherePatch
+Generated: TypeAlias = Rectangle | Annulus | Blocks | Cylinder | SpherePatch | Polygon
 Mesh: TypeAlias = Generated | MeshFile
 
 
