@@ -179,7 +179,7 @@ def test_inverted_element_at_a_support_is_named() -> None:
 
 
 def test_a_region_is_named_with_its_own_modulus() -> None:
-    """The soft half has a hundredth of the coupling modulus, and half the remanence: 50 times the share of its limit."""
+    """The outer half has a hundredth of the coupling modulus and half the remanence: there the limit comes first."""
     model = strip((4, 1), field=(0, 0, 1.0), remanence=(0.143, 0, 0))
     shell = model.shell
     mesh = shell.mesh.select_elements("outer", x1=(0.5 * LENGTH, LENGTH))
