@@ -29,8 +29,10 @@ from magshell.magnetics import COUPLINGS
 from magshell.magnetics.remanence import REMANENCES
 from magshell.materials import MATERIALS, MODULI, keys_of
 from magshell.model.loads import LOADS
+from magshell.model.parts import MOST_LEVELS
 from magshell.model.supports import SUPPORTS
 from magshell.problem import examples, fields, schema
+from magshell.problem.schema.region import Thickness
 from magshell.problem.schema.remanence import Folds
 from magshell.shell.elements import ELEMENTS
 
@@ -83,6 +85,15 @@ KINDS = {
     StrictBool: "true or false",
     float: "a quantity",
     tuple[float, float, float]: "three of them",
+    fields.Offset: '`"middle"`, `"top"`, `"bottom"` or a length',
+    fields.Levels: f"whole number from 1 to {MOST_LEVELS}",
+    fields.LengthRange: "two lengths",
+    Thickness: "length > 0, or a table",
+    schema.MaterialTable: "table, see `[material]`",
+    tuple[schema.RemanenceTable, ...]: "list of tables, see `[[remanence]]`",
+    tuple[schema.LayerTable, ...]: "list of tables, see below",
+    tuple[fields.PositiveLength, ...]: "list of lengths > 0",
+    dict[fields.Name, schema.Elements]: "table of selections",
     schema.Block: "table",
     Folds: "list of folds, see below",
     tuple[fields.PositiveFluxDensity, ...]: "list of flux densities > 0, rising",
@@ -91,6 +102,7 @@ KINDS = {
 }
 
 GROUPS = {
+    "element_groups": "More named elements, see *Selections*.",
     "edge_groups": "More named edges, see *Selections*.",
     "node_groups": "More named nodes, see *Selections*.",
 }
@@ -170,18 +182,71 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             **GROUPS,
         },
     ),
+    "elements-selection": (
+        schema.Elements,
+        {
+            **{f"x{i}": f"Least and greatest coordinate $X_{i}$; left out, it is free." for i in (1, 2, 3)},
+            "groups": "Element groups to choose from; left out, all elements.",
+        },
+    ),
     "selection": (schema.Selection, {f"x{i}": f"Coordinate $X_{i}$; left out, it is free." for i in (1, 2, 3)}),
     "shell": (
         schema.ShellTable,
         {
             "thickness": "$h$.",
             "density": "$\\rho$, mass per undeformed volume; gravity needs it.",
+            "layers": "From the bottom to the top, in place of `thickness`, `[material]` and `[[remanence]]`.",
+            "offset": "Where the mesh lies: in the mid-plane, at the top or the bottom face, or this far above the "
+            "mid-plane.",
+            "levels": "Gauss points through the thickness, of each layer; one layer needs two.",
             "element": "Quadratic in $u$, director and micro-rotation; or the paper's, with 6, 0 or 39 enhanced "
             "parameters.",
             "thickness_stretch": "Stretch that varies linearly across the thickness: an unknown $\\varphi$, none "
             "(locks in bending), or eliminated at each point.",
             "micro_rotation": "Without it: the classical shell of seven parameters, whose `coupling_modulus` and "
             "`length_scale` are 0 (also as multiples), and whose coupling is `deformation-gradient`.",
+        },
+    ),
+    "region": (
+        schema.RegionTable,
+        {
+            "group": "Element groups.",
+            "thickness": "$h$.",
+            "material": "Its law.",
+            "remanence": "Its remanence; `[]`: none.",
+            "density": "$\\rho$; of layers that do not say their own.",
+            "layers": "From the bottom to the top, in place of thickness, material and remanence.",
+            "offset": "Where the mesh lies in it.",
+            "levels": "Gauss points through the thickness of each layer.",
+        },
+    ),
+    "layer": (
+        schema.LayerTable,
+        {
+            "thickness": "Of the layer.",
+            "material": "Its law.",
+            "remanence": "Its remanence.",
+            "density": "Mass per undeformed volume.",
+        },
+    ),
+    "thickness-profile": (
+        schema.ThicknessProfile,
+        {
+            "along": "Direction of the coordinate $s$, which is 0 at the origin.",
+            "positions": "Values of $s$, rising.",
+            "values": "Thickness there; linear between, constant beyond.",
+        },
+    ),
+    "thickness-file": (
+        schema.ThicknessFile,
+        {
+            "file": "CSV with the column `thickness` and, if its rows are places, `x1,x2,x3`; without them one row per "
+            "node or per element.",
+            "thickness_unit": "Unit of the thickness.",
+            "length_unit": "Unit of the places.",
+            "stepped": "Whether an element has the value of the place nearest to its centre; else each node has that "
+            "of the place nearest to it, and between nodes it is interpolated.",
+            "tolerance": "Largest distance to the place; left out: half an element's longest diagonal.",
         },
     ),
     "fold": (
@@ -247,8 +312,9 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "title": "One line, shown by `magshell examples` and at the start of a run.",
             "description": "For the reader of the file.",
             "mesh": "The mid-surface.",
-            "shell": "What the surface is made into.",
+            "shell": "What the surface is made into; with it, as with the next, elements that are in no region.",
             "material": "The material law and its parameters.",
+            "regions": "Elements of another thickness, material, density or remanence.",
             "remanence": "The remanent flux density; elements without one have none.",
             "field": "The external field.",
             "loads": "Mechanical loads.",
@@ -301,6 +367,7 @@ TOP = {
     "material": "table",
     "field": "table",
     "solver": "table",
+    "regions": "list of tables",
     "remanence": "list of tables",
     "loads": "list of tables",
     "supports": "list of tables, at least one",
@@ -314,6 +381,13 @@ OTHERWISE = {
     ("field", "history"): keys.HISTORY.otherwise,
     **{(name, key): a.otherwise for name, one in DESCRIBED.items() for key, a in one.keys.items() if a.otherwise},
     ("file", "field"): "none",
+    **{("file", key): "**required**, unless layers or regions hold all" for key in ("shell", "material")},
+    ("shell", "thickness"): "**required**, unless layers or regions hold all",
+    **{
+        ("region", key): "that of the shell"
+        for key in ("thickness", "material", "remanence", "density", "offset", "levels")
+    },
+    ("layer", "density"): "that of the region",
     ("file", "results"): "see below",
     ("file", "solver"): "see below",
 }

@@ -74,7 +74,8 @@ def test_check_of_a_built_in_problem(name: str, capsys: pytest.CaptureFixture[st
     assert cli.main(["check", name]) == 0
     shown = capsys.readouterr()
     assert shown.err == ""
-    for section in ("Mesh", "Shell", "Material", "Remanence", "Field", "Supports", "Probes"):
+    made_of = "Regions" if name in ("bilayer-strip", "stepped-strip", "starfish") else "Material"
+    for section in ("Mesh", "Shell", made_of, "Remanence", "Field", "Supports", "Probes"):
         assert f"\n{section}\n" in shown.out
     assert "warning" not in shown.out
 

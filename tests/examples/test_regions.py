@@ -11,8 +11,11 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from examples.problems import read
+from magshell import solve
 from magshell.evaluation.converged import converged
 from magshell.model.loads import Gravity
+from magshell.problem.building import build
 
 MU0 = 4e-7 * math.pi
 ALLOWED = 3e-3
@@ -91,6 +94,22 @@ def test_stepped_strip(solved) -> None:
     assert q == pytest.approx(1.0, rel=1e-6)
     found = ((shell.mesh.points + path.steps[-1].state.displacement(len(shell.mesh.points)))[node] / length)[[0, 2]]
     assert np.abs(found - STEPPED).max() < ALLOWED, f"{found}, the elastica has {STEPPED}"
+
+
+def test_where_the_mesh_lies_moves_the_stepped_strip_as_a_whole(solved) -> None:
+    """Couples bend each half as before; flush at the bottom its mid-plane has a step, which turns with the strip."""
+    middle, source = solved("stepped-strip"), read("stepped-strip")[1]
+    shell = source.shell.model_copy(update={"offset": "bottom"})
+    built = build(source.model_copy(update={"shell": shell}), "flush")
+    flush, nodes = solve(built.model, built.settings), middle.model.probe_nodes
+    x, d = {}, {}
+    for name, path in (("middle", middle), ("flush", flush)):
+        reached = converged(path.discretisation, path.steps[-1])
+        x[name], d[name] = path.model.shell.mesh.points + reached.displacement, reached.director()
+    tip, step = nodes["tip"], nodes["step"]
+    found = x["flush"][tip] + 0.25e-3 * d["flush"][tip]
+    expected = x["middle"][tip] - 0.25e-3 * d["middle"][step] + [0.0, 0.0, 0.5e-3]
+    assert np.linalg.norm(found - expected) < 2e-4 * 40e-3, f"{1e3 * found} mm, expected {1e3 * expected} mm"
 
 
 def test_starfish(solved) -> None:

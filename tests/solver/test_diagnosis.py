@@ -176,3 +176,22 @@ def test_inverted_element_at_a_support_is_named() -> None:
     discretisation = discretised(strip())
     said = diagnosis(discretisation, discretisation.undeformed(), discretisation.model.loading(1.0), 0)
     assert "Element 0, which is turned inside out, touches the support 'left'." in said
+
+
+def test_a_region_is_named_with_its_own_modulus() -> None:
+    """The outer half has a hundredth of the coupling modulus and half the remanence: there the limit comes first."""
+    model = strip((4, 1), field=(0, 0, 1.0), remanence=(0.143, 0, 0))
+    shell = model.shell
+    mesh = shell.mesh.select_elements("outer", x1=(0.5 * LENGTH, LENGTH))
+    soft = shell.material._replace(coupling_modulus=0.01 * shell.material.coupling_modulus)
+    outer = ms.Region("outer", material=soft, remanence=ms.remanence.constant((0.0715, 0, 0)))
+    shell = ms.Shell(mesh, THICKNESS, shell.material, shell.remanence, regions=[outer])
+    discretisation = discretised(ms.Model(shell, [ms.Clamp("left")], model.field))
+    limit = 2.0 * soft.coupling_modulus * MU0 / 0.0715
+    state, loading = discretisation.undeformed(), discretisation.model.loading(limit)
+    couple = measure(discretisation, state, loading).couple
+    assert couple.ratio == pytest.approx(1.0, rel=1e-9)
+    assert couple.element in mesh.element_groups["outer"]
+    said = diagnosis(discretisation, state, loading, None)
+    assert ", in region 'outer'" in said, said
+    assert f"coupling_modulus than {soft.coupling_modulus / 1e3:.4g} kPa of region 'outer', or a weaker field" in said

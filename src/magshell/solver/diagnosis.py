@@ -250,7 +250,10 @@ def _couple(discretisation: Discretisation, state: State, loading: Loading) -> C
     if not reference.body.layout.q or not modulus.any() or not np.any(loading.flux_density):
         return None
     fields = evaluate(reference, state, level_stretch(reference, state, loading.flux_density))
-    F = fields.F.mean(axis=2)
+    volume = reference.geometry.volume
+    total = volume.sum(axis=2, keepdims=True)
+    shares = np.divide(volume, total, out=np.full_like(volume, 1.0 / volume.shape[2]), where=total > 0.0)
+    F = np.einsum("epk,epkxy->epxy", shares, fields.F)
     left, stretches, right = np.linalg.svd(F)
     Q = left @ right
     S = np.einsum("epyx,epy,epyz->epxz", right, stretches, right)
