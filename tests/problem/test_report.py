@@ -12,6 +12,7 @@ from magshell import problem
 from magshell.mesh import rectangle, split
 from magshell.problem import triangle_report
 from magshell.problem.building import build
+from magshell.problem.copies import digest
 from magshell.problem.reading import check, parse
 from magshell.problem.report import Report, describe
 from problem.loaded import EVERY_LOAD
@@ -181,3 +182,17 @@ def test_triangles_that_are_long_for_a_thin_shell(divisions: tuple[int, int], ra
         if ratio is not None:
             assert f"{ratio} times √(radius × thickness): where the shell bends to a radius of its size" in told[0]
     assert "where the shell is curved" in next(triangle_report.doubts(split(plain, "crossed"), 1e-3, 0.01))
+
+
+def test_results_are_described_and_leave_the_path_alone() -> None:
+    """Axes and outputs on request: said by check, and no part of what a results folder's steps depend on."""
+    table = '[results]\nlocal_axis = [0, 1, 0]\noutputs = ["stress", "von_mises_top"]\n[probes]'
+    texts = (STRIP, changed(STRIP, ("[probes]", table)))
+    plain, asked = (build(check(parse(text, "a.toml"), "a.toml"), "a.toml", text) for text in texts)
+    assert "Results" not in describe(plain).sections
+    said = dict(describe(asked).sections["Results"])
+    assert said["local axis"] == "(0, 1, 0), projected on the surface"
+    assert said["outputs beside the usual"] == "von_mises_top, stress_top, stress_middle, stress_bottom"
+    assert asked.model.outputs == ("stress", "von_mises_top")
+    assert asked.model.local_axis.tolist() == [0.0, 1.0, 0.0]
+    assert digest(asked) == digest(plain)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
@@ -13,14 +13,17 @@ from magshell.solver.path import Path
 from magshell.solver.step import Step
 
 
-def without_round_off(path: Path, output: Output, steps: Iterable[Step]) -> Iterator[FloatArray]:
-    """An output at each step; what is nothing but rounding is zero.
+def without_round_off(path: Path, outputs: Sequence[Output], steps: Iterable[Step]) -> Iterator[list[FloatArray]]:
+    """Outputs at each step; what is nothing but rounding is zero.
 
-    That is 1e-9 of its largest component where the path is farthest from rest.
+    That is 1e-9 of an output's largest component where the path is farthest from rest.
     """
-    farthest = max(path.steps, key=lambda step: float(np.abs(step.state.u).max()))
-    noise = 1e-9 * float(np.abs(output.evaluate(converged(path.discretisation, farthest))).max())
+    farthest = converged(path.discretisation, max(path.steps, key=lambda step: float(np.abs(step.state.u).max())))
+    noise = [1e-9 * float(np.abs(output.evaluate(farthest)).max()) for output in outputs]
+    del farthest
     for step in steps:
-        values = np.array(output.evaluate(converged(path.discretisation, step)), dtype=float)
-        values[np.abs(values) <= noise] = 0.0
-        yield values
+        reached = converged(path.discretisation, step)
+        found = [np.array(output.evaluate(reached), dtype=float) for output in outputs]
+        for values, least in zip(found, noise, strict=True):
+            values[np.abs(values) <= least] = 0.0
+        yield found

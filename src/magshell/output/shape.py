@@ -110,7 +110,7 @@ def shown_values(
 ) -> Iterator[FloatArray]:
     """The scalar shown at each step, in the unit of pictures, at the points of the surface."""
     _, factor = shown_unit(output)
-    for values in without_round_off(path, output, steps):
+    for (values,) in without_round_off(path, [output], steps):
         if output.where == "patch":
             spread = skin.at_corners(values[patches_of(path.model.shell).elements])
         else:

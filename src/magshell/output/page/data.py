@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from magshell.arrays import FloatArray
+from magshell.arrays import AnyArray, FloatArray
 from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import Output, chosen, find
 from magshell.evaluation.patches import patches_of
@@ -49,7 +49,7 @@ def collect(path: Path, steps: Sequence[Step], color: str, advance: Callable[[fl
     color : str
         Output that colours the shape when the page opens.
     advance : callable
-        Told the share of the work that is done, after each output.
+        Told the share of the work that is done, after each step.
 
     Raises
     ------
@@ -66,10 +66,14 @@ def collect(path: Path, steps: Sequence[Step], color: str, advance: Callable[[fl
         "sequential": text(_colours("viridis"), "u1"),
         "diverging": text(_colours("coolwarm"), "u1"),
     }
+    coded = [_Coded(path, output) for output in shown]
+    for number, found in enumerate(without_round_off(path, shown, steps)):
+        for one, values in zip(coded, found, strict=True):
+            one.add(values)
+        advance((number + 1) / len(steps))
     outputs = []
-    for number, output in enumerate(shown):
-        about, arrays[output.name] = _output(path, steps, output)
-        advance((number + 1) / len(shown))
+    for output, one in zip(shown, coded, strict=True):
+        about, arrays[output.name] = one.told()
         outputs.append(about)
     magnitudes = [float(np.linalg.norm(step.flux_density)) for step in steps]
     header = {
@@ -112,38 +116,47 @@ def _column(output: Output, component: int | None) -> int:
     return 0 if output.components == 1 else output.components
 
 
-def _output(path: Path, steps: Sequence[Step], output: Output) -> tuple[dict[str, Any], str]:
-    """Description and codes of an output: step by step, component by component; once if it never changes."""
-    count, nodes = output.components, patches_of(path.model.shell).nodes
-    whole = count > 1 and output.has_length
-    ranges: list[list[tuple[float, float]]] = [[] for _ in range(count + whole)]
-    codes = []
-    for values in without_round_off(path, output, steps):
-        values = values[nodes] if output.where == "point" else values
-        columns = values.reshape(len(values), count).T
-        coded = [quantised(column) for column in columns]
-        for found, (_, ends) in zip(ranges, coded, strict=False):
+class _Coded:
+    """An output as codes and ranges: step by step, component by component."""
+
+    def __init__(self, path: Path, output: Output) -> None:
+        self._output, self._nodes = output, patches_of(path.model.shell).nodes
+        self._whole = output.components > 1 and output.has_length
+        self._ranges: list[list[tuple[float, float]]] = [[] for _ in range(output.components + self._whole)]
+        self._codes: list[AnyArray] = []
+
+    def add(self, values: FloatArray) -> None:
+        """Values of the next step."""
+        values = values[self._nodes] if self._output.where == "point" else values
+        coded = [quantised(column) for column in values.reshape(len(values), self._output.components).T]
+        for found, (_, ends) in zip(self._ranges, coded, strict=False):
             found.append(ends)
-        if whole:
-            ranges[-1].append(span(np.linalg.norm(values, axis=1)))
-        codes.append(np.stack([code for code, _ in coded]))
-    constant = all(np.array_equal(code, codes[0]) for code in codes) and all(len(set(found)) == 1 for found in ranges)
-    if constant:
-        codes, ranges = codes[:1], [found[:1] for found in ranges]
-    unit, factor = shown_unit(output)
-    about = {
-        "name": output.name,
-        "letters": [plain(output, i + 1 if count > 1 else None) for i in range(count)] + [plain(output)] * whole,
-        "unit": unit,
-        "factor": factor,
-        "sentence": output.sentence,
-        "where": "cell" if output.where == "cell" else "point",
-        "components": count,
-        "rows": codes[0].shape[1],
-        "steps": len(codes),
-        "ranges": ranges,
-    }
-    return about, text(np.stack(codes), "<u2")
+        if self._whole:
+            self._ranges[-1].append(span(np.linalg.norm(values, axis=1)))
+        self._codes.append(np.stack([code for code, _ in coded]))
+
+    def told(self) -> tuple[dict[str, Any], str]:
+        """Description and codes; once if the output never changes."""
+        output, codes, ranges = self._output, self._codes, self._ranges
+        constant = all(np.array_equal(code, codes[0]) for code in codes)
+        if constant and all(len(set(found)) == 1 for found in ranges):
+            codes, ranges = codes[:1], [found[:1] for found in ranges]
+        count = output.components
+        unit, factor = shown_unit(output)
+        about = {
+            "name": output.name,
+            "letters": [plain(output, i + 1 if count > 1 else None) for i in range(count)]
+            + [plain(output)] * self._whole,
+            "unit": unit,
+            "factor": factor,
+            "sentence": output.sentence,
+            "where": "cell" if output.where == "cell" else "point",
+            "components": count,
+            "rows": codes[0].shape[1],
+            "steps": len(codes),
+            "ranges": ranges,
+        }
+        return about, text(np.stack(codes), "<u2")
 
 
 def curves(path: Path) -> dict[str, Any]:
