@@ -110,7 +110,7 @@ def test_every_kind_of_load() -> None:
     assert number(entry(report, "Loads", "12 W L / (E h³)")) == pytest.approx(weight / stiff, rel=1e-3)
     assert number(entry(report, "Loads", "p L / (E h)")) == pytest.approx(8 * extent / (young * thickness), rel=1e-3)
     assert entry(report, "Shell", "density rho") == "1200 kg/m^3"
-    assert entry(report, "Shell", "mass") == "120 mg, centroid at (10 mm, 2.5 mm, 0)"
+    assert entry(report, "Shell", "mass") == "0.12 g, centroid at (10 mm, 2.5 mm, 0)"
     assert report.sections["Shell"] != report_of(STRIP).sections["Shell"]
 
 
