@@ -32,6 +32,7 @@ verify: $(VENV)/installed-dev
 	MAGSHELL_MUTATIONS=10000 $(BIN)/pytest tests/faults
 	$(BIN)/python docs/make_element_study.py
 	$(BIN)/python docs/make_incompressible_study.py
+	$(BIN)/python docs/make_layer_study.py
 	$(BIN)/python docs/make_accuracy_study.py
 	$(BIN)/python docs/make_published_study.py
 	$(BIN)/python docs/make_path_study.py
