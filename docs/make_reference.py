@@ -80,6 +80,8 @@ KINDS = {
     fields.PositiveRemanence: "remanence > 0",
     fields.RemanenceVector: "three remanences",
     fields.Direction: "three numbers, not all 0",
+    fields.Outline: "list of corners, each two lengths",
+    tuple[fields.Outline, ...]: "list of lists of corners",
     fields.Corners: "four corners, each two or three lengths",
     str: "text",
     StrictBool: "true or false",
@@ -171,11 +173,27 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             **GROUPS,
         },
     ),
+    "polygon": (
+        schema.Polygon,
+        {
+            "generator": "Which generator.",
+            "corners": "Pairs $X_1$, $X_2$, in the order of a walk around it.",
+            "holes": "Polygons that are cut out.",
+            "size": "Side of an element.",
+            **GROUPS,
+        },
+    ),
     "mesh-file": (
         schema.MeshFile,
         {
-            "file": "A mesh, from the folder of the problem file.",
-            "unit": "Of the lengths in the file. Files of `magshell mesh` say it themselves; of others it is required.",
+            "file": "A mesh, a drawing or a geometry, from the folder of the problem file.",
+            "unit": "Of the lengths in the file. Files of `magshell mesh`, STEP, IGES, SVG and most DXF files say it "
+            "themselves, of others it is required; for a drawing it overrides what that says.",
+            "size": "Side of an element, of what gmsh meshes.",
+            "mid_surface": "Whether the file holds a solid of constant thickness whose mid-surface is meant: a body, "
+            "solid elements, or a closed skin as in an STL file.",
+            "holes": "Layers of a drawing whose outlines are holes, whatever they lie in.",
+            "gap": "Ends of a drawing's lines that are closer are joined.",
             "second_order": "Whether elements of first order get mid-side nodes, on the surface that they stand for.",
             "closed": "Whether a closed surface with sharp edges or parallel faces is meant, such as a box; else it is "
             "refused as the skin of a solid.",
@@ -378,6 +396,9 @@ OTHERWISE = {
     ("blocks", "elements"): "each block its own",
     ("block", "elements"): "those of `mesh`",
     ("mesh-file", "unit"): "that which the file says",
+    ("mesh-file", "size"): "about 800 elements",
+    ("mesh-file", "gap"): "1e-4 of the size of the drawing",
+    ("polygon", "size"): "about 800 elements",
     ("field", "history"): keys.HISTORY.otherwise,
     **{(name, key): a.otherwise for name, one in DESCRIBED.items() for key, a in one.keys.items() if a.otherwise},
     ("file", "field"): "none",

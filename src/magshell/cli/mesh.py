@@ -52,7 +52,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--mid-surface", action="store_true", help="of a solid of constant thickness: a body, solid elements, or a skin"
     )
-    parser.add_argument("--holes", metavar="LAYER", nargs="+", help="layers of a drawing whose outlines are holes")
+    parser.add_argument(
+        "--holes", metavar="LAYER", action="append", help="a layer of a drawing whose outlines are holes; once for each"
+    )
     parser.add_argument("--gap", metavar="LENGTH", help="ends of a drawing's lines closer than this are joined")
     parser.add_argument(
         "--trust-script", action="store_true", help="let a .geo run programs and write files, as gmsh does"

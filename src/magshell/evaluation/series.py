@@ -56,11 +56,12 @@ def _magnetic(converged: Converged) -> Number:
 
 
 def _largest(name: str, unit: str, sentence: str, quantities: Sequence[str]) -> Series:
+    columns = [maxima.value_column(quantity) for quantity in quantities]
     return Series(
         name,
         unit,
-        f"{sentence} over the nodes and both faces.",
-        lambda model: [maxima.value_column(quantity) for quantity in quantities],
+        f"{sentence} over the nodes and both faces: {' and '.join(f'`{column}`' for column in columns)}.",
+        lambda model: columns,
         lambda converged: maxima.values(converged, quantities),
     )
 
@@ -109,7 +110,7 @@ SERIES: dict[str, Series] = {
         Series(
             "places of the largest",
             "",
-            "Node, element and face (1: upper, -1: lower) of these.",
+            "Node, element and face (1: upper, -1: lower) of these: `.node`, `.element`, `.face` behind their names.",
             lambda model: maxima.place_columns(),
             maxima.places,
             curves=False,

@@ -155,7 +155,8 @@ def _surface(contents: Contents, name: str, changes: list[str]) -> tuple[IntArra
     if contents.solids:
         raise InputError(
             f"{name}: has {contents.solids} solid elements (tetrahedra, hexahedra, ...). A shell is the mesh of a "
-            "mid-surface, and its thickness is a number in the problem file: draw and mesh that surface instead."
+            "mid-surface, and its thickness is a number in the problem file: draw and mesh that surface instead; of a "
+            "sheet of one thickness, mid_surface = true (magshell mesh: --mid-surface) finds it."
         )
     if contents.unread:
         listed = ", ".join(f"{count} of type {kind}" for kind, count in contents.unread.items())
@@ -181,8 +182,9 @@ def _no_skin(reason: str, name: str, count: int) -> None:
     if reason:
         raise InputError(
             f"{name}: is the skin of a solid: {count} elements are a closed surface, and {reason}. A shell is the mesh "
-            "of a mid-surface, and its thickness is a number in the problem file: export that surface. If the closed "
-            "surface is the shell, as of a thin-walled box, write closed = true (magshell mesh: --closed)."
+            "of a mid-surface, and its thickness is a number in the problem file: export that surface; of a sheet of "
+            "one thickness, mid_surface = true (magshell mesh: --mid-surface) finds it. If the closed surface is the "
+            "shell, as of a thin-walled box, write closed = true (magshell mesh: --closed)."
         )
 
 

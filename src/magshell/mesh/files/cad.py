@@ -152,7 +152,8 @@ def open_geometry(gmsh: Any, path: pathlib.Path, name: str) -> None:
     if gmsh.model.getEntities(3):
         raise InputError(
             f"{name}: holds {len(gmsh.model.getEntities(3))} solid(s). A shell is the mesh of a mid-surface, and its "
-            "thickness is a number in the problem file: export the mid-surface (a sheet or surface body)"
+            "thickness is a number in the problem file: export the mid-surface (a sheet or surface body); of a sheet "
+            "of one thickness, mid_surface = true (magshell mesh: --mid-surface) finds it"
         )
     if not gmsh.model.getEntities(2):
         raise InputError(f"{name}: has no surface that could be meshed")
