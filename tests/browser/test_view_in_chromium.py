@@ -17,7 +17,7 @@ from rolled import FIELD, mixed, plate, rolled
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
-from solver.models import THICKNESS, rubber, strip
+from solver.models import LENGTH, THICKNESS, rubber, strip
 
 import magshell as ms
 from magshell.evaluation.converged import converged
@@ -396,4 +396,28 @@ def test_other_curves_can_be_chosen(shared, tmp_path):
     moment = 1e6 * path.table()["left.M2"]
     place = shared.driver.execute_script("return curves.py(arguments[0])", float(moment.iloc[-1]))
     assert ring(shared)[1] == pytest.approx(place, abs=1e-6)
+    assert shared.console() == []
+
+
+def test_regions_are_drawn_with_their_thickness(shared, tmp_path):
+    """Faces and walls of a strip with a step, flush at the bottom: as high as it is thick, and coloured all over."""
+    model = strip()
+    mesh = model.shell.mesh.select_elements("outer", x1=(0.5 * LENGTH, LENGTH))
+    outer = ms.Region("outer", thickness=0.4 * THICKNESS)
+    shell = replace(model.shell, mesh=mesh, regions=[outer], offset="bottom")
+    path = solve(replace(model, shell=shell))
+    shared.size(*SIZE)
+    shared.open(write_page(path, tmp_path / "view.html"))
+    shared.driver.execute_script("go(0)")
+    thick, heights, values = shared.driver.execute_script(
+        "const z = (part) => Array.from(body.positions).filter((_, i) => i % 3 === 2 && part(body.positions[i - 2]));"
+        f"const half = {0.5 * LENGTH};"
+        "const span = (list) => [Math.min(...list), Math.max(...list)];"
+        "return [body.thick, [span(z((x) => x < 0.9 * half)), span(z((x) => x > 1.1 * half))],"
+        "Array.from(body.values).every((value) => Number.isFinite(value))]"
+    )
+    assert thick
+    assert values
+    assert heights[0] == pytest.approx([0.0, THICKNESS], abs=1e-6 * LENGTH)
+    assert heights[1] == pytest.approx([0.0, 0.4 * THICKNESS], abs=1e-6 * LENGTH)
     assert shared.console() == []
