@@ -272,7 +272,7 @@ def _shell(problem: Problem, figures: _Whole) -> Iterator[tuple[str, str]]:
 
 def _material(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
     material = problem.model.shell.parts[0].layers[0].material
-    yield "law", region_report.law_of(material)
+    yield "law", region_report.law_of(material) if problem.file.material is None else problem.file.material.law
     yield "shear modulus mu", show(material.shear_modulus, STRESS)
     yield "Lamé constant lambda", show(material.lame_lambda, STRESS)
     for key, described in own_keys(type(material)).items():
