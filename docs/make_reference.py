@@ -220,9 +220,9 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "element": "Quadratic in $u$, director and micro-rotation; or the paper's, with 6, 0 or 39 enhanced "
             "parameters.",
             "thickness_stretch": "Stretch that varies linearly across the thickness: an unknown $\\varphi$, none "
-            "(locks in bending), or eliminated at each point.",
+            "(locks in bending; not with layers), or eliminated at each point.",
             "micro_rotation": "Without it: the classical shell of seven parameters, whose `coupling_modulus` and "
-            "`length_scale` are 0 (also as multiples), and whose coupling is `deformation-gradient`.",
+            "`length_scale` are 0 (also as multiples), and whose coupling is `deformation-gradient`; no layers.",
         },
     ),
     "region": (

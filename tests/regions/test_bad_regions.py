@@ -78,6 +78,19 @@ BAD = {
         lambda: of_regions(ms.Region("outer", material=SOFT), material=CLASSICAL, micro_rotation=False),
         r"'outer'\): material: coupling_modulus is 100000; without micro-rotation it must be 0",
     ),
+    "layers without micro-rotation": (
+        lambda: bare(layers=[ms.Layer(1e-3, CLASSICAL)], micro_rotation=False),
+        r"^shell: micro_rotation is False beside layers, whose transverse shear is measured from the micro-rotation; leave "
+        r"it out$",
+    ),
+    "a region of layers without micro-rotation": (
+        lambda: of_regions(ms.Region("outer", layers=[ms.Layer(1e-3, CLASSICAL)]), material=CLASSICAL, micro_rotation=False),
+        "^regions.*'outer'.*: micro_rotation is False beside layers",
+    ),
+    "layers that cannot stretch": (
+        lambda: bare(layers=[LAYER], thickness_stretch="none"),
+        r"^shell: thickness_stretch is 'none' beside layers, which always stretch, each by itself; leave it out$",
+    ),
     "density of zero": (lambda: of_regions(ms.Region("outer", density=0.0)), r"'outer'\): density is 0 kg/m\^3"),
     "density of a layer": (lambda: bare(layers=[ms.Layer(1e-3, SOFT, density=-1.0)]), r"layers\[0\]: density is -1"),
     "offset": (lambda: of_regions(ms.Region("outer", offset="topp")), "offset is 'topp'; or give a length. Did you mean 'top'"),

@@ -58,7 +58,7 @@ class Shell:
         Mass per undeformed volume, kg/m³; gravity needs it.
     micro_rotation : bool, optional
         False: the classical shell of seven parameters (u, w, φ). The materials' coupling_modulus and length_scale must
-        then be 0, and only `DeformationGradientEnergy` can couple a field to it.
+        then be 0, only `DeformationGradientEnergy` can couple a field to it, and there are no layers.
     regions : sequence of Region, optional
         Elements that are of another make.
     layers : sequence of Layer, optional
@@ -122,8 +122,22 @@ class Shell:
             raise InputError(
                 f"shell: thickness_stretch is '{self.thickness_stretch}'. {suggest(self.thickness_stretch, STRETCHES)}"
             )
+        for draft in self._drafts:
+            if draft.layered:
+                self._check_theory_of_layers(draft.where)
         put(self, "_heights", heights_of(self, self._drafts))
         put(self, "_drafts", completed_drafts(self._drafts, self._heights, self.micro_rotation))
+
+    def _check_theory_of_layers(self, where: str) -> None:
+        if not self.micro_rotation:
+            raise InputError(
+                f"{where}: micro_rotation is False beside layers, whose transverse shear is measured from the "
+                "micro-rotation; leave it out"
+            )
+        if self.thickness_stretch == "none":
+            raise InputError(
+                f"{where}: thickness_stretch is 'none' beside layers, which always stretch, each by itself; leave it out"
+            )
 
     def __repr__(self) -> str:
         made = [] if self.thickness is None else [f"thickness {in_words(self.thickness)}"]
