@@ -136,7 +136,8 @@ class Shell:
             )
         if self.thickness_stretch == "none":
             raise InputError(
-                f"{where}: thickness_stretch is 'none' beside layers, which always stretch, each by itself; leave it out"
+                f"{where}: thickness_stretch is 'none' beside layers, which always stretch, each by itself; "
+                "leave it out"
             )
 
     def __repr__(self) -> str:
