@@ -80,6 +80,32 @@ def test_means_over_the_layers():
     np.testing.assert_allclose(everywhere, shell.remanence_at_points[:, 0], atol=1e-16)
 
 
+def opposed(mesh, material=SOFT):
+    """Two layers whose remanence has no mean."""
+    layers = [ms.Layer(0.5e-3, material, ms.remanence.constant([sign * 0.1, 0, 0])) for sign in (-1, 1)]
+    return ms.Shell(mesh, layers=layers)
+
+
+def test_layers_magnetised_against_each_other_bend_in_a_field_along_them():
+    """With the energy of m = F B̃ the stresses f ⊗ B̃ of the two have the moment h²/4 B B_rem / mu0 about the middle."""
+    field, rubber = 1e-3, SOFT._replace(lame_lambda=0.0)
+    shell = opposed(strip(), rubber)
+    assert shell.magnetised
+    coupling = ms.DeformationGradientEnergy()
+    model = ms.Model(shell, [ms.Clamp("left")], ms.UniformField([field, 0, 0]), coupling)
+    u = ms.solve(model).steps[-1].state.displacement(len(shell.mesh.points))
+    moment = THICKNESS**2 / 4 * 0.1 * field / coupling.vacuum_permeability
+    stiffness = 2 * rubber.shear_modulus * THICKNESS**3 / 12 + rubber.shear_modulus * rubber.length_scale**2 * THICKNESS
+    np.testing.assert_allclose(u[:, 2].min(), -0.5 * moment * LENGTH**2 / stiffness, rtol=1e-3)
+
+
+def test_a_field_off_a_mirror_plane_is_told_also_where_the_remanence_has_no_mean(caplog):
+    ms.Model(
+        opposed(strip()), [ms.Clamp("left"), ms.SymmetryPlane("top", [0, 1, 0])], ms.UniformField([0.0, 1e-3, 1e-3])
+    )
+    assert "the field (0, 1 mT, 1 mT) is 45° off the plane" in caplog.text
+
+
 def test_a_remanence_is_asked_only_where_it_holds():
     asked = {}
 

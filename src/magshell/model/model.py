@@ -187,7 +187,7 @@ class Model:
         otherwise = "and no support moves, nor is there a load: nothing loads the shell"
         if not any(amounts.field * self.field.magnitude for amounts in self._ends):
             raise NothingLoads(f"field: flux_density is zero {otherwise}")
-        if not np.any(self.shell.remanence_at_points):
+        if not self.shell.magnetised:
             raise NothingLoads(f"remanence: it is zero everywhere {otherwise}")
 
     @cached_property

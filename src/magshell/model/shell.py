@@ -165,6 +165,11 @@ class Shell:
         varies = callable(first.layers[0].thickness)
         return len(self._drafts) == 1 and not (first.layered or varies or first.offset not in ("middle", 0.0))
 
+    @cached_property
+    def magnetised(self) -> bool:
+        """Whether any layer has remanence, also where that of the layers has no mean."""
+        return any(bool(part.remanence.any()) for part in self.parts)
+
     @property
     def greatest_thickness(self) -> float:
         """m."""

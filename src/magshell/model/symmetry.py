@@ -113,7 +113,7 @@ def _of_place(mesh: Mesh, plane: Plane) -> Iterator[str]:
 
 def _of_field(model: Mirrored, plane: Plane) -> Iterator[str]:
     """A field that is neither in the plane nor normal to it, or now this and now that."""
-    if not np.any(model.shell.remanence_at_points) or remanence_sign(model, plane) is not None:
+    if not model.shell.magnetised or remanence_sign(model, plane) is not None:
         return
     several = len(model.stages) > 1
     seen: dict[int, int] = {}

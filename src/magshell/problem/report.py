@@ -384,9 +384,12 @@ def _doubts(problem: Problem, figures: _Whole, strong: Strength) -> Iterator[str
     if figures.field > 5.0:
         field = show(figures.field, FLUX_DENSITY)
         yield f"the field is {field}: beyond most laboratories; check field.flux_density"
-    if figures.strongest > 1.5:
-        yield f"the remanence is {show(figures.strongest, FLUX_DENSITY)}: more than any magnet keeps"
-    if figures.field and not figures.strongest:
+    strongest = max(float(np.linalg.norm(part.remanence, axis=-1).max()) for part in problem.model.shell.parts)
+    if strongest > 1.5:
+        yield f"the remanence is {show(strongest, FLUX_DENSITY)}: more than any magnet keeps"
+    if figures.field and not figures.strongest and problem.model.shell.magnetised:
+        yield "the remanence of the layers has no mean: the undeformed shape feels no couple"
+    elif figures.field and not figures.strongest:
         yield "there is a field but no remanence: the field does nothing"
     elif figures.field and figures.couple < 1e-9 * figures.field * figures.strongest:
         yield "the field is parallel to the remanence everywhere: the undeformed shape feels no couple"

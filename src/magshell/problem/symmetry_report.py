@@ -24,7 +24,7 @@ WORDS = {MIRRORED: "mirrored", REVERSED: "mirrored and reversed"}
 def other_half(problem: Problem, plane: Plane) -> str:
     """How the other half is magnetised, to be added to the support; empty without field or remanence."""
     model = problem.model
-    if not model.field.magnitude or not np.any(model.shell.remanence_at_points):
+    if not model.field.magnitude or not model.shell.magnetised:
         return ""
     sign = symmetry.remanence_sign(model, plane)
     return "" if sign is None else f"; the other half has the remanence {WORDS[sign]}"
