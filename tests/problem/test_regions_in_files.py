@@ -190,3 +190,14 @@ def test_a_remanence_that_no_element_takes_is_told(tmp_path: Path, capsys: pytes
     main(["check", str(tmp_path / "lost.toml")])
     said = " ".join("".join(capsys.readouterr()).split())
     assert "remanence[0]: 2 elements of 'outer' (first element 2) lie in the region 'outer', which has its own" in said
+
+
+@pytest.mark.parametrize(("offset", "told"), [("0.5 mm", False), ("0.6 mm", True), ("-10 mm", True)])
+def test_a_mesh_outside_its_faces_is_told(
+    offset: str, told: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Beside the half of 0.7 to 1 mm the other is 1 mm thick."""
+    (tmp_path / "apart.toml").write_text(changed(REGIONS, ('offset = "bottom"', f'offset = "{offset}"')))
+    assert main(["check", str(tmp_path / "apart.toml")]) == 0
+    said = " ".join("".join(capsys.readouterr()).split())
+    assert ("'rest': the mesh lies outside its faces" in said) is told, said

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -106,7 +106,19 @@ def doubts(problem: Problem) -> Iterator[str]:
                 )
         if entry.group is None and not of_shell.size:
             yield f"remanence[{number}]: no element has it: all regions have their own remanence or layers"
+    yield from _outside(shell.parts)
     yield from _layers_that_bend_apart(problem)
+
+
+def _outside(parts: Sequence[Part]) -> Iterator[str]:
+    """A mesh that lies beyond a face, so that nothing of the shell is where it is drawn, supported and loaded."""
+    for part in parts:
+        beyond = np.abs(part.offset_at_nodes) - 0.5 * part.at_nodes.sum(axis=2)
+        if beyond.max() > 1e-9 * part.at_nodes.max():
+            yield (
+                f"'{name_of(part)}': the mesh lies outside its faces, {show(float(beyond.max()), LENGTH)} from the "
+                "nearer one; check offset"
+            )
 
 
 def _layers_that_bend_apart(problem: Problem) -> Iterator[str]:
