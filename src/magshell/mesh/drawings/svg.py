@@ -64,8 +64,8 @@ def read_svg(path: pathlib.Path, name: str) -> Drawing:
 def _frame(svg: Any) -> tuple[float, FloatArray, float | None, str]:
     """Pixels in a unit of the drawing; the corner below on the left, pixels; that unit, mm, and its name.
 
-    Without a size of the page, or with one in per cent, the file does not say what its unit is. (Programs write 72, 90 or
-    96 to the inch.)
+    Without a size of the page, or with one in per cent, the file does not say what its unit is: programs write 72, 90
+    or 96 to the inch.
     """
     box = svg.viewbox
     height = float(svg.height or 0.0)
