@@ -81,6 +81,7 @@ def test_plot_draws_curve_shapes_and_animation(folder, tmp_path, can_draw, capsy
         (["plot", "--steps", "last"], "'last' is not a number of a step"),
         (["plot", "--color", "u4"], "There is no output 'u4'"),
         (["view", "--color", "enrgy"], "Did you mean 'energy'?"),
+        (["plot", "--curves", ""], "There is no curve ''"),
         (["plot", "--curves", "left.R4"], "Did you mean 'left.R"),
         (
             ["plot", "--curves", "left.R3,left.M2"],

@@ -17,7 +17,8 @@ examples:
   magshell export results --out body.vtu --step 5
 
 .stl is a closed surface of flat triangles, binary, in mm: for slicers and CAD. .vtu holds solid elements of second
-order, hexahedra of 20 nodes and wedges of 15, in m and with every output: for ParaView and other solvers.
+order, hexahedra of 20 nodes and wedges of 15, in m, with the outputs of the mid-surface: for ParaView
+and other solvers. Stresses and strains of the faces are in DIR/steps.
 A run that was interrupted, or that is still going on, is exported as far as it came."""
 
 

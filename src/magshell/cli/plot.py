@@ -58,7 +58,7 @@ def run(given: argparse.Namespace) -> int:
         require_writer(given.animate)
     path = read(given.directory).path
     steps = _steps(path, given.steps)
-    columns = [name.strip() for name in given.curves.split(",")] if given.curves else []
+    columns = [name.strip() for name in given.curves.split(",")] if given.curves is not None else []
     if columns:
         chosen(path, columns)
     directory = made(pathlib.Path(given.out or given.directory))

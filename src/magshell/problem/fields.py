@@ -130,7 +130,7 @@ def _as_list(value: object) -> object:
 
 def _one_or_more(value: object) -> object:
     if value == []:
-        raise InputError("is an empty list; name at least one group or leave the key out")
+        raise InputError("is an empty list; name at least one or leave the key out")
     return [value] if isinstance(value, str) else value
 
 

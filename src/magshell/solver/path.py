@@ -242,7 +242,7 @@ class Path:
         ----------
         file : path
             `.stl`: a closed surface for printers and CAD, binary, in mm. `.vtu`: solid elements of second order, in m,
-            with every output.
+            with the outputs of the mid-surface.
         step : int
             Which converged step; negative counts from the last.
         """

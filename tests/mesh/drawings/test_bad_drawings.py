@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 
+import numpy as np
 import pytest
 from files.same import attempted
 from hypothesis import HealthCheck, given, settings
@@ -24,7 +25,9 @@ WRONG = {
                         r"layer 'cut': an outline crosses or touches itself at \(5, 5\) mm"),
     "crossing another": (lambda s: (lines(s, SQUARE), lines(s, [(5, 5), (15, 5), (15, 8), (5, 8)], "b")),
                          r"layers 'cut' and 'b': two outlines cross at \(10, [58]\) mm"),
-    "only text": (lambda s: s.add_text("a"), r"draws no lines \(it has entities that are no lines left out: 1 TEXT\)"),
+    "crossing another of the same layer": (lambda s: (lines(s, SQUARE), lines(s, [(5, 5), (15, 5), (15, 8), (5, 8)])),
+                                           r"(?<=dxf: )layer 'cut': two outlines cross at \(10, [58]\) mm"),
+    "only text": (lambda s: s.add_text("a"), "draws no lines; entities that are no lines left out: 1 TEXT$"),
     "nothing": (lambda s: None, "draws no lines$"),
     "no length": (lambda s: s.add_line((1, 1), (1, 1)), "all its lines have no length"),
     "no area": (lambda s: (lines(s, SQUARE), s.add_lwpolyline([(2, 2), (4, 2), (2, 2)], close=True)),
@@ -69,7 +72,11 @@ def test_units_layers_and_sizes(tmp_path):
     [
         ("a.dxf", "hello\nthere", "a.dxf: is not a DXF file, or a damaged one"),
         ("a.svg", "<svg><g>", "a.svg, line 1: is not an SVG file"),
-        ("a.svg", "<svg xmlns='http://www.w3.org/2000/svg'><text>a</text></svg>", "a.svg: draws no lines .*1 text"),
+        (
+            "a.svg",
+            "<svg xmlns='http://www.w3.org/2000/svg'><text>a</text></svg>",
+            "a.svg: draws no lines; elements that are no lines left out: 1 text",
+        ),
         ("a.csv", "", "a.csv: draws no lines"),
         ("a.csv", "1,2\n3,4\n", "a.csv, line 1: the polygon has 2 corners; it needs three or more"),
         ("a.csv", "1,2\n3,nan\n", "a.csv, line 2: 'nan' is not a coordinate"),
@@ -115,3 +122,16 @@ def test_any_table_is_read_or_refused(tmp_path, text):
     (tmp_path / "a.csv").write_text(text)
     drawing, said = attempted(lambda: read_table(tmp_path / "a.csv", "a.csv"))
     assert said.startswith("a.csv") if drawing is None else all(piece.line for piece in drawing.pieces)
+
+
+@needs_drawings
+@pytest.mark.parametrize("size", ["", 'width="100%" height="100%"'])
+def test_an_svg_without_a_size_has_no_unit(size, tmp_path):
+    """Such a file is in whatever its program takes for a pixel, 1/72 or 1/96 inch."""
+    file = tmp_path / "a.svg"
+    file.write_text(
+        f'<svg xmlns="http://www.w3.org/2000/svg" {size} viewBox="0 0 40 20"><rect width="20" height="10"/></svg>'
+    )
+    with pytest.raises(InputError, match=r"^unit: is missing: a\.svg does not say"):
+        ms.mesh.from_drawing(file)
+    assert np.ptp(ms.mesh.from_drawing(file, unit="mm").points, axis=0) == pytest.approx((20e-3, 10e-3, 0.0))

@@ -78,6 +78,18 @@ def test_an_svg_in_its_unit_or_in_another(width, unit, millimetres, said, tmp_pa
     assert np.abs(np.hypot(*(hole - (28, 20)).T) - 6).max() < 1e-5
 
 
+def test_clones_of_an_svg_are_drawn_where_they_are_placed(tmp_path):
+    file = tmp_path / "clones.svg"
+    file.write_text(
+        """<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"
+ width="40mm" height="20mm" viewBox="0 0 40 20"><defs><circle id="hole" r="2"/></defs>
+<rect width="40" height="20"/><use xlink:href="#hole" x="10" y="10"/><use href="#hole" x="30" y="10"/></svg>"""
+    )
+    mesh = ms.mesh.from_drawing(file, size=3e-3)
+    assert {"hole-1", "hole-2"} < set(mesh.groups)
+    assert area(mesh) == pytest.approx((800 - 8 * np.pi) * 1e-6, rel=1e-4)
+
+
 def test_polygons_of_a_table(tmp_path):
     file = tmp_path / "frame.csv"
     file.write_text("x1 [mm];x2\n0;0\n20;0\n20;10\n0;10\n\n5;2,5\n15;2,5\n15;7,5\n5;7,5\n5;2,5\n")

@@ -182,8 +182,10 @@ def _parents(outlines: list[Chain], polygons: list[Polygon]) -> list[int]:
                 parent = other
             elif common > SAME * polygon.area:
                 crossing = polygon.boundary.intersection(polygons[other].boundary).representative_point()
+                layers = list(dict.fromkeys([outlines[other].layer, outlines[number].layer]))
+                where = "layers '{}' and '{}'" if len(layers) > 1 else "layer '{}'"
                 raise InputError(
-                    f"layers '{outlines[other].layer}' and '{outlines[number].layer}': two outlines cross at "
+                    f"{where.format(*layers)}: two outlines cross at "
                     f"({crossing.x:.6g}, {crossing.y:.6g}) mm; they may touch, or one may lie in the other"
                 )
         parents.append(parent)

@@ -92,7 +92,7 @@ def from_drawing(
     try:
         plan = planned(Joined(pieces, None if gap is None else 1e3 * gap), holes)
     except InputError as error:
-        said = f" (it has {drawing.notes[0]})" if drawing.notes and not pieces else ""
+        said = f"; {drawing.notes[0]}" if drawing.notes and not pieces else ""
         raise InputError(f"{name}: {error}{said}") from None
     mesh = meshed(plan, name, size)
     if curves := sum(not (piece.line or piece.arc) for piece in pieces):

@@ -57,30 +57,38 @@ def read_svg(path: pathlib.Path, name: str) -> Drawing:
         else:
             what = "text" if isinstance(element, SVGText) else type(element).__name__.lower()
             others[what] = others.get(what, 0) + 1
-    notes = counted(others, "what is no line")
+    notes = counted(others, "elements that are no lines")
     return Drawing(pieces, millimetres, unit, tuple(notes))
 
 
-def _frame(svg: Any) -> tuple[float, FloatArray, float, str]:
-    """Pixels in a unit of the drawing; the corner below on the left, pixels; that unit, mm, and its name."""
+def _frame(svg: Any) -> tuple[float, FloatArray, float | None, str]:
+    """Pixels in a unit of the drawing; the corner below on the left, pixels; that unit, mm, and its name.
+
+    Without a size of the page, or with one in per cent, the file does not say what its unit is: programs write 72, 90
+    or 96 to the inch.
+    """
     box = svg.viewbox
     height = float(svg.height or 0.0)
     given = _LENGTH.fullmatch(str(svg.values.get("attributes", {}).get("width", svg.values.get("width", ""))))
-    if box is None or not box.width or not box.height or not svg.width:
-        return 1.0, np.array([0.0, height]), PIXEL, "px"
-    scale = min(float(svg.width) / box.width, height / box.height)
     corner = np.array([0.0, height])
-    if given is None or given[2].lower() not in ABSOLUTE:
-        return scale, corner, PIXEL * scale, "px"
+    known = given is not None and given[2].lower() in ABSOLUTE
+    if box is None or not box.width or not box.height or not svg.width:
+        return 1.0, corner, PIXEL if known else None, "px"
+    scale = min(float(svg.width) / box.width, height / box.height)
+    if given is None or not known:
+        return scale, corner, None, ""
     length, named = float(given[1]), given[2].lower()
     return scale, corner, ABSOLUTE[named] * length / box.width, named or "px"
 
 
 def _elements(group: Any, layer: str) -> Iterator[tuple[Any, str]]:
-    """Shapes, texts and pictures with their layers."""
-    from svgelements import Group
+    """Shapes, texts and pictures with their layers; clones (`use`) are on the layer where they are placed."""
+    from svgelements import Group, Use
 
     for element in group:
+        if isinstance(element, Use):
+            yield from _elements(element, layer)
+            continue
         if not isinstance(element, Group):
             yield element, layer
             continue

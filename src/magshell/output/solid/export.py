@@ -59,7 +59,7 @@ def write_solid(path: Path, file: str | os.PathLike[str], step: int = -1) -> Wri
     path : Path
     file : path
         `.stl`: a closed surface of flat triangles, binary, in mm. `.vtu`: solid elements of second order, in m, with
-        every output.
+        the outputs of the mid-surface (stresses and strains of the faces are in the files of the steps).
     step : int
         Which converged step; negative counts from the last.
 
