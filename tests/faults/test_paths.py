@@ -81,6 +81,7 @@ READING = {
     "mesh geo": Use(("mesh", "{file}", "--unit", "mm"), ".geo"),
     "view": Use(("view", "{file}"), ""),
     "plot": Use(("plot", "{file}"), ""),
+    "export": Use(("export", "{file}", "--out", "body.stl"), ""),
     "resume": Use(("run", "--resume", "{file}"), ""),
     "resume sweep": Use(("sweep", "--resume", "{file}"), ""),
 }
