@@ -160,7 +160,10 @@ REFUSED = {
     "no such file": (["two-plates-4.msh"], "there is no such file. Did you mean 'two-plates-41.msh'?"),
     "size of a mesh": (["two-plates-41.msh", "--size", "1 mm"], "size: two-plates-41.msh is a mesh"),
     "size without unit": (["two-plates.geo", "--unit", "mm", "--size", "1"], "--size: '1' has no unit"),
-    "order of a geometry": (["two-plates.geo", "--unit", "mm", "--second-order"], "second_order: is for meshes; a geometry"),
+    "order of a geometry": (
+        ["two-plates.geo", "--unit", "mm", "--second-order"],
+        "second_order: is for meshes; a geometry",
+    ),
     "another format": (["two-plates-41.msh", "--out", "a.vtu"], "--out a.vtu: a mesh is written as .msh"),
     "onto itself": (["two-plates-41.msh", "--out", "two-plates-41.msh"], "is the file that is read"),
     "a folder": (["two-plates-41.msh", "--out", "in.msh"], "--out in.msh: is a folder"),
