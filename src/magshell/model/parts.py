@@ -12,8 +12,9 @@ from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError, suggest
 from magshell.magnetics.remanence import Remanence
 from magshell.magnetics.remanence.groups import only
-from magshell.materials import BY_DEFAULT, DEFAULTS, Multiple, completed, own_keys
+from magshell.materials import completed
 from magshell.mesh import Mesh
+from magshell.model.checked import checked_material, positive
 from magshell.model.region import NO_REMANENCE, OFFSETS, Group, Layer, Region
 from magshell.model.thickness import Thickness
 from magshell.shell.elements import ElementType
@@ -389,52 +390,3 @@ def _check_remanence(draft: Draft, vectors: FloatArray) -> None:
         row, layer = (int(index) for index in np.argwhere(bad)[0])
         where = f"{draft.where}: layers[{layer}]: " if draft.layered else ""
         raise InputError(f"{where}remanence: it is not finite in element {draft.elements[row]}")
-
-
-def checked_material(where: str, material: Any, micro_rotation: bool) -> Any:
-    """A material whose parameters are finite numbers in their range.
-
-    Raises
-    ------
-    InputError
-        They are not, or they are of a micro-rotation that the shell does not have.
-    """
-    if not hasattr(material, "_fields") or not hasattr(material, "problems"):
-        raise InputError(f"{where} is {material!r}; it must be a material law with its parameters")
-    values = []
-    signed = [name for name, key in own_keys(type(material)).items() if key.kind in ("Number", "Stress")]
-    for name, value in zip(material._fields, material, strict=True):
-        if name in DEFAULTS and (value is BY_DEFAULT or isinstance(value, Multiple)):
-            values.append(value)
-            continue
-        value = float(value)
-        positive_ = name == "shear_modulus" or (name == "length_scale" and micro_rotation)
-        if not np.isfinite(value) or (name not in signed and (value < 0.0 or (value == 0.0 and positive_))):
-            allowed = "" if name in signed else " and positive" if positive_ else " and zero or positive"
-            raise InputError(f"{where}: {name} is {value:g}; it must be finite{allowed}")
-        values.append(value)
-        if not micro_rotation and name in ("coupling_modulus", "length_scale") and value > 0.0:
-            raise InputError(
-                f"{where}: {name} is {value:g}; without micro-rotation it must be 0: leave it out or write 0"
-            )
-    checked = type(material)(*values)
-    for problem in checked.problems():
-        raise InputError(f"{where}: {problem}")
-    return checked
-
-
-def positive(where: str, value: Any, unit: str) -> float:
-    """A positive finite number.
-
-    Raises
-    ------
-    InputError
-        It is not.
-    """
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise InputError(f"{where} is {value!r}; it must be a number ({unit})") from None
-    if not np.isfinite(number) or number <= 0.0:
-        raise InputError(f"{where} is {number:g} {unit}; it must be positive and finite")
-    return number

@@ -14,18 +14,9 @@ from magshell.errors import InputError, suggest
 from magshell.magnetics.remanence import Remanence
 from magshell.materials import completed
 from magshell.mesh import Mesh
+from magshell.model.checked import checked_material, positive
 from magshell.model.overall import overall_remanence
-from magshell.model.parts import (
-    Draft,
-    Heights,
-    Part,
-    checked_material,
-    completed_drafts,
-    drafts_of,
-    heights_of,
-    parts_of,
-    positive,
-)
+from magshell.model.parts import Draft, Heights, Part, completed_drafts, drafts_of, heights_of, parts_of
 from magshell.model.region import NO_REMANENCE, Layer, Region
 from magshell.model.thickness import Thickness
 from magshell.shell.elements import ELEMENTS, QUADRATIC

@@ -12,7 +12,6 @@ from magshell.arrays import FloatArray, IntArray
 from magshell.evaluation.outputs import chosen
 from magshell.materials import own_keys
 from magshell.mesh.files import FileMesh
-from magshell.mesh.geometry import centres, unit
 from magshell.mesh.quality import worst
 from magshell.model import coupling_limit, symmetry
 from magshell.model.supports import Support, SymmetryPlane
@@ -29,12 +28,11 @@ from magshell.problem import (
 from magshell.problem.building import Problem
 from magshell.problem.building.material import by_default
 from magshell.problem.fields import dimension_of
+from magshell.problem.figures import Figures, Whole, figures_of
 from magshell.problem.load_report import Strength
 from magshell.shell.unknowns import width
 from magshell.units import DENSITY, FLUX_DENSITY, LENGTH, MASS, NUMBER, STRESS, show
 from magshell.wording import counted, quantity
-
-VACUUM_PERMEABILITY = 4e-7 * math.pi
 
 
 @dataclass(frozen=True)
@@ -56,86 +54,9 @@ class Report:
     notes: list[str]
 
 
-@dataclass(frozen=True)
-class _Figures:
-    """The magnitudes of a part that the report and its doubts are about, SI."""
-
-    name: str
-    extent: float
-    thinnest: float
-    thickest: float
-    radius: float
-    shear_modulus: float
-    softest: float
-    stiffest: float
-    youngs_modulus: float
-    poissons_ratio: float
-    field: float
-    strongest: float
-
-    @property
-    def slenderness(self) -> float:
-        return self.extent / self.thinnest
-
-    @property
-    def magnetic_load(self) -> float:
-        """10³ |B| |Brem| / (mu mu0), the abscissa of the source's figures."""
-        return 1e3 * self.field * self.strongest / (self.shear_modulus * VACUUM_PERMEABILITY)
-
-    @property
-    def bending_load(self) -> float:
-        """12 |Brem| |B| / (mu0 E) (L/h)²: an elastic line of this length bends visibly from about 0.1."""
-        stress = self.field * self.strongest / VACUUM_PERMEABILITY
-        return 12.0 * stress / self.youngs_modulus * self.slenderness**2
-
-    @property
-    def bending_stiffness(self) -> float:
-        """E h³."""
-        return self.youngs_modulus * self.thinnest**3
-
-
-@dataclass(frozen=True)
-class _Whole:
-    """The figures of all parts, and magnitudes of the whole shell, SI."""
-
-    parts: list[_Figures]
-    extent: float
-    field: float
-    remanence: FloatArray
-    couple: float
-
-    @property
-    def strongest(self) -> float:
-        return float(self.remanence.max())
-
-    @property
-    def magnetic_load(self) -> float:
-        return max(part.magnetic_load for part in self.parts)
-
-    @property
-    def bending_load(self) -> float:
-        return max(part.bending_load for part in self.parts)
-
-    @property
-    def thinnest(self) -> float:
-        return min(part.thinnest for part in self.parts)
-
-    @property
-    def thickest(self) -> float:
-        return max(part.thickest for part in self.parts)
-
-    @property
-    def radius(self) -> float:
-        return min(part.radius for part in self.parts)
-
-    @property
-    def most_flexible(self) -> _Figures:
-        return min(self.parts, key=lambda part: part.bending_stiffness)
-
-
 def describe(problem: Problem) -> Report:
     """Describe a problem that has passed all checks."""
-    figures = _figures(problem)
+    figures = figures_of(problem)
     soft = figures.most_flexible
     strong = load_report.strength(problem, figures.extent, soft.thinnest, soft.youngs_modulus)
     several = region_report.has_several(problem)
@@ -164,56 +85,6 @@ def problem_html(problem: Problem) -> str:
     from magshell.output.notebook import model_html
 
     return model_html(problem.model, problem.title, describe(problem).warnings)
-
-
-def _figures(problem: Problem) -> _Whole:
-    shell, flux = problem.model.shell, np.array(problem.file.field.flux_density)
-    mesh = shell.mesh
-    vectors = shell.overall_remanence(mesh, centres(mesh.points, mesh.elements)[:, None])[:, 0]
-    extent, field = float(np.ptp(mesh.points, axis=0).max()), float(np.linalg.norm(flux))
-    remanence = np.linalg.norm(vectors, axis=1)
-    mu, lam = shell.mean_of("shear_modulus"), shell.mean_of("lame_lambda")
-    parts = []
-    for part in shell.parts:
-        one, thickness = part.elements[0], part.at_nodes.sum(axis=2)
-        moduli = [layer.material.shear_modulus for layer in part.layers]
-        ratios = [_poissons_ratio(layer.material.shear_modulus, layer.material.lame_lambda) for layer in part.layers]
-        parts.append(
-            _Figures(
-                name=part.name,
-                extent=extent,
-                thinnest=float(thickness.min()),
-                thickest=float(thickness.max()),
-                radius=_smallest_radius(mesh.points[mesh.elements[part.elements]]),
-                shear_modulus=float(mu[one]),
-                softest=min(moduli),
-                stiffest=max(moduli),
-                youngs_modulus=float(mu[one] * (3.0 * lam[one] + 2.0 * mu[one]) / (lam[one] + mu[one])),
-                poissons_ratio=max(ratios),
-                field=field,
-                strongest=float(remanence[part.elements].max()),
-            )
-        )
-    couple = float(np.linalg.norm(np.cross(vectors, flux), axis=1).max())
-    return _Whole(parts=parts, extent=extent, field=field, remanence=remanence, couple=couple)
-
-
-def _poissons_ratio(mu: float, lam: float) -> float:
-    return 0.5 * lam / (lam + mu)
-
-
-def _smallest_radius(x: FloatArray) -> float:
-    """Least radius of curvature of elements (n, 8, 3), from the rise of their mid-side nodes; inf where flat."""
-    start, end, middle = x[:, :4], np.roll(x[:, :4], -1, axis=1), x[:, 4:]
-    centre = 0.5 * x[:, 4:].sum(axis=1) - 0.25 * x[:, :4].sum(axis=1)
-    inward = 4.0 * centre[:, None] - 3.0 * middle - np.roll(middle, 2, axis=1)
-    normal = unit(np.cross(end - start, inward))
-    rise = np.abs(((middle - 0.5 * (start + end)) * normal).sum(axis=2))
-    chord = np.linalg.norm(end - start, axis=2)
-    curved = rise > 1e-9 * chord
-    if not curved.any():
-        return math.inf
-    return float((0.125 * chord[curved] ** 2 / rise[curved] + 0.5 * rise[curved]).min())
 
 
 def _mesh(problem: Problem, extent: float) -> Iterator[tuple[str, str]]:
@@ -247,7 +118,7 @@ def _worst(measure: tuple[int, float], meaning: str) -> str:
     return f"{measure[1]:.3g} ({meaning}) in element {measure[0]}"
 
 
-def _shell(problem: Problem, figures: _Whole) -> Iterator[tuple[str, str]]:
+def _shell(problem: Problem, figures: Whole) -> Iterator[tuple[str, str]]:
     shell = problem.model.shell
     least, greatest = figures.thinnest, figures.thickest
     uniform = greatest - least <= 1e-9 * greatest
@@ -270,7 +141,7 @@ def _shell(problem: Problem, figures: _Whole) -> Iterator[tuple[str, str]]:
         yield "R/h", f"{worst.radius / worst.thickest:.4g} {radius}"
 
 
-def _material(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
+def _material(problem: Problem, figures: Figures) -> Iterator[tuple[str, str]]:
     material = problem.model.shell.parts[0].layers[0].material
     yield "law", region_report.law_of(material) if problem.file.material is None else problem.file.material.law
     yield "shear modulus mu", show(material.shear_modulus, STRESS)
@@ -285,7 +156,7 @@ def _material(problem: Problem, figures: _Figures) -> Iterator[tuple[str, str]]:
     yield "length scale l", f"{show(material.length_scale, LENGTH)} = {ratio:.4g} h"
 
 
-def _remanence(problem: Problem, figures: _Whole) -> Iterator[tuple[str, str]]:
+def _remanence(problem: Problem, figures: Whole) -> Iterator[tuple[str, str]]:
     mesh, magnitude = problem.model.shell.mesh, figures.remanence
     shared = region_report.shared(problem)
     for entry in problem.file.remanence:
@@ -310,7 +181,7 @@ def _span(magnitude: FloatArray, elements: IntArray) -> str:
     return f"{show(least, FLUX_DENSITY)} to {show(greatest, FLUX_DENSITY)}"
 
 
-def _field(problem: Problem, figures: _Whole) -> Iterator[tuple[str, str]]:
+def _field(problem: Problem, figures: Whole) -> Iterator[tuple[str, str]]:
     table = problem.file.field
     if figures.field == 0.0:
         yield "flux density B", "none"
@@ -324,7 +195,7 @@ def _field(problem: Problem, figures: _Whole) -> Iterator[tuple[str, str]]:
     yield "12 |B| |Brem| / (mu0 E) (L/h)²", f"{figures.bending_load:.4g}"
 
 
-def _supports(problem: Problem, figures: _Whole) -> Iterator[tuple[str, str]]:
+def _supports(problem: Problem, figures: Whole) -> Iterator[tuple[str, str]]:
     planes = iter(symmetry.planes(problem.model))
     for support in problem.model.supports:
         nodes = counted(len(problem.model.shell.mesh.nodes_of(support.group)), "node")
@@ -376,7 +247,7 @@ def _coordinate(value: float, extent: float) -> str:
     return show(value if abs(value) > 1e-9 * extent else 0.0, LENGTH)
 
 
-def _doubts(problem: Problem, figures: _Whole, strong: Strength) -> Iterator[str]:
+def _doubts(problem: Problem, figures: Whole, strong: Strength) -> Iterator[str]:
     """Magnitudes that no experiment has, most often a slip of units."""
     for part in figures.parts:
         where = "" if len(figures.parts) == 1 else f"region '{part.name}': "
@@ -413,7 +284,7 @@ def _doubts(problem: Problem, figures: _Whole, strong: Strength) -> Iterator[str
         yield "there are no probes: the history will hold the load only"
 
 
-def _other_thickness(problem: Problem, figures: _Whole) -> Iterator[str]:
+def _other_thickness(problem: Problem, figures: Whole) -> Iterator[str]:
     """A warning if the solid that the mesh was made of is not as thick as the shell."""
     mesh = problem.model.shell.mesh
     if not isinstance(mesh, FileMesh) or mesh.origin.thickness is None:
@@ -426,7 +297,7 @@ def _other_thickness(problem: Problem, figures: _Whole) -> Iterator[str]:
         )
 
 
-def _doubts_of(part: _Figures) -> Iterator[str]:
+def _doubts_of(part: Figures) -> Iterator[str]:
     """Those of one part."""
     if part.extent < 5.0 * part.thickest:
         yield f"L/h is {part.extent / part.thickest:.3g}: too thick for a shell; check shell.thickness and the mesh"
