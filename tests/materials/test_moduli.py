@@ -247,7 +247,7 @@ def test_layers_have_that_of_all_of_them_together():
     rubber, soft = ms.MicropolarNeoHookean(303e3, 7300e3), ms.MicropolarNeoHookean(30e3, 730e3, length_scale=2e-5)
     whole = ms.Shell(halves(), layers=[ms.Layer(4e-4, rubber), ms.Layer(6e-4, soft)])
     assert lengths(whole) == pytest.approx([1e-5, 2e-5], rel=1e-15)
-    classical = ms.Shell(halves(), layers=[ms.Layer(4e-4, rubber)], micro_rotation=False)
+    classical = ms.Shell(halves(), 4e-4, rubber, micro_rotation=False)
     assert lengths(classical) == [0.0]
 
 
