@@ -126,7 +126,7 @@ class ShellTerm:
         if not np.any(rate.flux_density):
             return np.zeros((self._nodes, COMPONENTS))
         loading, change = instant.loading, np.zeros((self._nodes, COMPONENTS))
-        for step, weight in CENTRAL if self.body.points["by_level"].any() else FORWARD:
+        for step, weight in FORWARD if self.body.by_level is None else CENTRAL:
             there = loading._replace(flux_density=loading.flux_density + step * rate.flux_density)
             change += weight * self.evaluate(Instant(instant.state, there), STATIC, None, None).residual
         return change

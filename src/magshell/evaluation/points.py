@@ -16,7 +16,7 @@ from magshell.model.reference import faces_of
 from magshell.model.shell import Shell
 from magshell.shell import loops, rotation
 from magshell.shell.body import Reference
-from magshell.shell.geometry import SectionGeometry
+from magshell.shell.geometry import SectionGeometry, base_at, dual
 from magshell.shell.rotation import cross
 from magshell.shell.shear_profile import Moduli, middle
 from magshell.shell.state import State
@@ -111,22 +111,14 @@ def faces(shell: Shell, geometry: SectionGeometry) -> Levels:
     """The upper face, the middle and the lower face at the points: three levels."""
     bottom, top = np.moveaxis(faces_of(shell), 2, 0)
     z = np.stack([top, 0.5 * (bottom + top), bottom], axis=2)
-    covariant = geometry.A[:, :, None] + z[..., None, None] * geometry.dD[:, :, None]
-    director = np.broadcast_to(geometry.D[:, :, None, None], (*z.shape, 1, 3))
-    base = np.concatenate([covariant, director], axis=3)
+    base = base_at(geometry.A, geometry.D, geometry.dD, z)
     warping = np.zeros_like(z)
     for part in shell.parts:
         if part.layered:
             moduli = [Moduli.of(layer.material) for layer in part.layers]
-            warping[part.elements] = np.stack(
-                [
-                    -np.ones(part.at_points.shape[:2]),
-                    middle(part.at_points, moduli),
-                    -np.ones(part.at_points.shape[:2]),
-                ],
-                axis=2,
-            )
-    return Levels(z, np.ascontiguousarray(np.swapaxes(np.linalg.inv(base), -1, -2)), warping, None)
+            warping[part.elements] = -1.0  # no shear at the faces
+            warping[part.elements, :, 1] = middle(part.at_points, moduli)
+    return Levels(z, np.ascontiguousarray(dual(base)), warping, None)
 
 
 def at_heights(reference: Reference, values: FloatArray, z: FloatArray) -> FloatArray:

@@ -29,6 +29,8 @@ class Rows(NamedTuple):
 
     Attributes
     ----------
+    nodes : int
+        Number of mesh nodes.
     of : ndarray, shape (rows,)
         Mesh node; that of the first rows is their own number.
     elements : ndarray, shape (elements, 8)
@@ -37,6 +39,7 @@ class Rows(NamedTuple):
         Which unknowns a row has for itself.
     """
 
+    nodes: int
     of: IntArray
     elements: IntArray
     carried: AnyArray
@@ -45,11 +48,6 @@ class Rows(NamedTuple):
     def copies(self) -> AnyArray:
         """Rows that are not the first of their mesh node."""
         return np.arange(self.nodes, len(self.of))
-
-    @property
-    def nodes(self) -> int:
-        """Number of mesh nodes."""
-        return int(self.of.max()) + 1
 
     def shared(self, nodal: Columns) -> Columns:
         """Nodal columns (rows, 11) whose shared ones are those of the mesh nodes."""
@@ -93,7 +91,7 @@ def rows_of(shell: Shell) -> Rows:
                 if row != node:
                     of.append(node)
             elements[divmod(at, rest)] = row
-    return Rows(np.array(of), elements, _carried(shell, elements, np.array(of)))
+    return Rows(count, np.array(of), elements, _carried(shell, elements, np.array(of)))
 
 
 class _Section(NamedTuple):

@@ -195,11 +195,21 @@ def section_geometry(
         for rows in (slice(0, 1), slice(1, 3))
     )
     z = sections.z
-    covariant = A[:, :, None] + z[..., None, None] * dD[:, :, None]
-    base = np.concatenate([covariant, np.broadcast_to(D[:, :, None], (*covariant.shape[:3], 1, 3))], axis=3)
-    G = np.swapaxes(np.linalg.inv(base), -1, -2)
+    base = base_at(A, D[:, :, 0], dD, z)
+    G = dual(base)
     volume = np.linalg.det(base) * sections.heights * weights[..., None]
     return SectionGeometry(A, D[:, :, 0], dD, z, G, volume)
+
+
+def base_at(A: FloatArray, D: FloatArray, dD: FloatArray, z: FloatArray) -> FloatArray:
+    """Base A_1 + z D,1, A_2 + z D,2, D (elements, p, k, 3, 3), as rows, at heights z (elements, p, k)."""
+    covariant = A[:, :, None] + z[..., None, None] * dD[:, :, None]
+    return np.concatenate([covariant, np.broadcast_to(D[:, :, None, None], (*z.shape, 1, 3))], axis=3)
+
+
+def dual(base: FloatArray) -> FloatArray:
+    """Dual base (..., 3, 3) of a base, both as rows."""
+    return np.asarray(np.swapaxes(np.linalg.inv(base), -1, -2))
 
 
 def least_shifts(geometry: SectionGeometry, faces: FloatArray) -> FloatArray:
