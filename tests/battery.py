@@ -23,11 +23,11 @@ from magshell.evaluation.converged import Converged
 from magshell.magnetics import UniformField, remanence
 from magshell.mesh import Mesh, rectangle, split
 from magshell.model.course import Loading
+from magshell.model.places import Places
 from magshell.model.rows import rows_of
 from magshell.model.shell import Shell
 from magshell.model.supports import resolve
 from magshell.shell.elements import ELEMENTS, QUADRATIC
-from magshell.shell.normals import nodal_normals
 from magshell.shell.point import INTERNAL
 from magshell.shell.state import State
 
@@ -168,18 +168,20 @@ class Unsupported:
     loads: tuple = ()
     local_axis: tuple = (1.0, 0.0, 0.0)
     outputs: tuple = ()
+    rigid: tuple = ()
 
     @cached_property
     def rows(self):
-        return rows_of(self.shell)
+        return rows_of(self.shell, self.rigid)
 
     @cached_property
     def constraints(self):
-        return self.rows.constraints(resolve(self.shell.mesh, self.supports, self.shell.carriers))
+        places = Places(self.shell.mesh, self.rows.carriers, self.rigid)
+        return self.rows.constraints(resolve(places, self.supports))
 
     @cached_property
     def applied(self):
-        return tuple(load.applied(self.shell, self.normals) for load in self.loads)
+        return tuple(load.applied(self.shell, self.rows) for load in self.loads)
 
     def loading(self, load_factor):
         held = load_factor * self.constraints.values[0]
@@ -187,7 +189,7 @@ class Unsupported:
 
     @cached_property
     def normals(self):
-        return nodal_normals(self.shell.mesh.points, self.shell.mesh.elements)
+        return self.rows.normals[: self.rows.nodes]
 
 
 def free_body(
@@ -226,7 +228,7 @@ def rest_and_stretch(d):
 
 def places(d):
     """Points and normals (rows, 3) of the rows."""
-    return d.mesh.points[d.rows.of], d.normals[d.rows.of]
+    return d.rows.points, d.rows.normals
 
 
 def homogeneous(d, F, R):

@@ -47,7 +47,7 @@ class NodalForces(Load):
     nodal: Any
     history: Any = None
 
-    def applied(self, shell: ms.Shell, normals: Any) -> Any:
+    def applied(self, shell: ms.Shell, rows: Any) -> Any:
         """Those forces."""
         return DeadForces(self.nodal)
 

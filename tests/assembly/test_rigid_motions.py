@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 import magshell as ms
 from magshell.errors import InputError
 from magshell.mesh import Mesh, rectangle
+from magshell.model.places import Places
 from magshell.model.rigid import free_motions
 from magshell.model.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane, resolve
 from magshell.shell.elements import QUADRATIC
@@ -109,6 +110,6 @@ def test_neither_units_nor_place_matter(size):
         ([Clamp("left")], 0),
     ):
         normals = np.broadcast_to(Q[:, 2], far.points.shape)
-        constraints = resolve(far, supports, QUADRATIC.carriers(far.elements, len(far.points)))
+        constraints = resolve(Places(far, QUADRATIC.carriers(far.elements, len(far.points))), supports)
         motions = free_motions(far.points, normals, np.arange(len(far.points)), constraints)
         assert len(motions) == count, f"{supports}: {motions}"

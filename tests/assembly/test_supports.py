@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 import magshell as ms
 from magshell.errors import InputError
 from magshell.mesh import rectangle
+from magshell.model.places import Places
 from magshell.model.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane, resolve
 from magshell.shell.elements import PAPER, QUADRATIC
 
@@ -31,7 +32,7 @@ def carrying(mesh, group, element, field):
 
 
 def constrained(mesh, supports, element=QUADRATIC):
-    return resolve(mesh, supports, element.carriers(mesh.elements, len(mesh.points)))
+    return resolve(Places(mesh, element.carriers(mesh.elements, len(mesh.points))), supports)
 
 
 def held(mesh, element, *supports):

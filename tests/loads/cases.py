@@ -14,6 +14,7 @@ import magshell as ms
 from loads.bodies import grouped
 from magshell.mesh import Mesh
 from magshell.model.loads import Applied
+from magshell.model.rows import rows_of
 from magshell.shell.elements import QUADRATIC
 from magshell.shell.normals import nodal_normals
 from magshell.shell.state import State
@@ -63,7 +64,7 @@ def shell_of(mesh: Mesh, element: Any = QUADRATIC, micro_rotation: bool = True, 
 
 
 def applied(load: Any, shell: ms.Shell) -> Applied:
-    return load.applied(shell, nodal_normals(shell.mesh.points, shell.mesh.elements))
+    return load.applied(shell, rows_of(shell))
 
 
 def on_mesh(case: Case, mesh: Mesh, element: Any = QUADRATIC) -> Applied:

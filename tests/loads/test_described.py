@@ -15,12 +15,11 @@ from magshell.model import symmetry
 from magshell.model.loads import LOADS, Load
 from magshell.model.loads.dead import DeadForces, nodal
 from magshell.model.loads.load import resultant
-from magshell.shell.normals import nodal_normals
+from magshell.model.rows import Rows, rows_of
 from magshell.units import FORCE, MOMENT
 
 MESH = ms.mesh.rectangle(2.0, 1.0, (4, 2))
 SHELL = shell_of(MESH)
-NORMALS = nodal_normals(MESH.points, MESH.elements)
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +33,7 @@ class Pull(Load):
     group: str | None = None
     history: Sequence[float] | None = None
 
-    def applied(self, shell: ms.Shell, normals: np.ndarray) -> Any:
+    def applied(self, shell: ms.Shell, rows: Rows) -> Any:
         on_u = np.zeros_like(shell.mesh.points)
         on_u[self.members(shell)] = np.broadcast_to(self.pull, 3)
         return DeadForces(on_u)
@@ -47,7 +46,7 @@ class Twist(Pull):
     kind = "twist"
     amount = ("pull", MOMENT)
 
-    def applied(self, shell: ms.Shell, normals: np.ndarray) -> Any:
+    def applied(self, shell: ms.Shell, rows: Rows) -> Any:
         class Couples(DeadForces):
             def forces(self, state: Any) -> np.ndarray:
                 return nodal("omega", self.on_u)
@@ -58,7 +57,7 @@ class Twist(Pull):
 
 
 def forces(load: Load) -> np.ndarray:
-    return load.applied(SHELL, NORMALS).forces(at_rest(MESH))
+    return load.applied(SHELL, rows_of(SHELL)).forces(at_rest(MESH))
 
 
 def test_a_vector_on_nodes() -> None:

@@ -10,6 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from magshell.arrays import FloatArray
+from magshell.equations.dependence import Dependence
 from magshell.equations.frames import to_frames, to_global
 from magshell.equations.insertion import Insertion
 from magshell.equations.instant import STATIC, Increment, Instant, Prediction
@@ -95,16 +96,18 @@ class Discretisation:
         self.carried = self.rows.carried
         self.free = self.carried & ~model.constraints.fixed
         cliques = [clique for term in self.terms for clique in term.couplings()]
+        self.dependence = Dependence(self.rows)
+        self._levers = self.dependence.levers(self.undeformed())
         self.numbering = Numbering(self.rows, self.free, cliques, ordering)
         self.dofs = self.numbering.dofs
         self._insertion = Insertion(self.numbering, model.constraints)
         self.shell.place(self.numbering, model.constraints)
-        self.loads.place(self._insertion)
+        self.loads.place(self._insertion, self.dependence)
         self._noise = _sum(term.noise() for term in self.terms)
 
     @property
     def normals(self) -> FloatArray:
-        """Unit normals (nodes, 3) of the undeformed mid-surface."""
+        """Unit normals (nodes, 3) of the undeformed mid-surface; `rows` has those of every sheet of a joint."""
         return self.model.normals
 
     def undeformed(self) -> State:
@@ -131,6 +134,7 @@ class Discretisation:
         insertion = self._insertion if tangent else None
         if insertion is not None:
             insertion.data[:] = 0.0
+            self._levers = self.dependence.levers(instant.state)
         parts = [term.evaluate(instant, STATIC, insertion, imposed) for term in self.terms]
         residual = self.rows.folded(_sum(part.residual for part in parts))
         right_side = np.zeros(self.dofs)
@@ -164,18 +168,22 @@ class Discretisation:
 
     def correction(self, solution: FloatArray) -> Increment:
         """Increment of all unknowns that a solution (dofs,) of the last tangent makes with its right side."""
-        nodal = self._expanded(solution, None)
-        return Increment(nodal, self.shell.recovered(nodal, whole=True))
+        return self._expanded(solution, None, whole=True)
 
     def direction(self, solution: FloatArray, imposed: FloatArray | None = None) -> Increment:
         """Increment of all unknowns along a solution (dofs,) for another right side, and imposed components."""
-        nodal = self._expanded(solution, imposed)
-        return Increment(nodal, self.shell.recovered(nodal, whole=False))
+        return self._expanded(solution, imposed, whole=False)
 
-    def _expanded(self, solution: FloatArray, imposed: FloatArray | None) -> FloatArray:
+    def _expanded(self, solution: FloatArray, imposed: FloatArray | None, whole: bool) -> Increment:
         nodal = np.zeros((len(self.rows.of), COMPONENTS)) if imposed is None else imposed.copy()
         nodal[self.free] = solution[self.numbering.equations]
-        return self.to_global(self.rows.shared(nodal))
+        independent = self.to_global(self.rows.shared(nodal))
+        alpha = self.shell.recovered(independent, whole)
+        return Increment(self.dependence.spread(independent, self._levers), alpha)
+
+    def moved(self, state: State, increment: Increment) -> State:
+        """A state after an increment; dependent values are exactly those of the others."""
+        return self.dependence.settled(state.moved(increment.nodal, increment.alpha))
 
     def to_global(self, nodal: FloatArray) -> FloatArray:
         """Turn nodal columns (nodes, 11) from the nodes' frames to the global axes."""

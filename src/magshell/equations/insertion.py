@@ -20,16 +20,27 @@ from magshell.shell.unknowns import COLUMNS, COMPONENTS
 
 def destination(elements: Elements, numbering: Numbering) -> Destination:
     """Where the values of these elements go."""
-    count, m = elements.nodes.shape
-    pairs = np.repeat(elements.nodes, m, axis=1), np.tile(elements.nodes, (1, m))
+    places, slot = _slots(elements, numbering.place)
+    m = places.shape[1]
+    pairs = np.repeat(places, m, axis=1), np.tile(places, (1, m))
     return Destination(
         elements=elements,
+        slot=slot,
         entry=np.ascontiguousarray(COMPONENTS * elements.nodes[:, elements.node] + elements.component),
         number=numbering.number,
         rank=numbering.rank,
         indptr=numbering.indptr,
-        offset=numbering.offsets(*pairs).reshape(count, m, m),
+        offset=numbering.offsets(*pairs).reshape(len(places), m, m),
     )
+
+
+def _slots(elements: Elements, place: IntArray) -> tuple[IntArray, IntArray]:
+    """Places (elements, slots) of the elements, and the slot (values,) of each value (see `Destination`)."""
+    moved, own = place[elements.nodes, COLUMNS["u"].start], place[elements.nodes, COLUMNS["phi"].start]
+    if np.array_equal(moved, own):
+        return own, elements.node
+    of_row = np.isin(elements.component, (COLUMNS["phi"].start, COLUMNS["s"].start))
+    return np.concatenate([moved, own], axis=1), elements.node + np.where(of_row, moved.shape[1], 0)
 
 
 def summed(to: Destination, forces: FloatArray, nodes: int) -> FloatArray:
@@ -61,7 +72,8 @@ class Insertion:
             return np.empty((0, 3, 3), dtype=np.int64)
         number, rank = self.numbering.number, self.numbering.rank
         rows, columns = COLUMNS[pairs.row_field], COLUMNS[pairs.column_field]
-        offset = self.numbering.offsets(pairs.columns, pairs.rows)
+        place = self.numbering.place
+        offset = self.numbering.offsets(place[pairs.columns, columns.start], place[pairs.rows, rows.start])
         row_number, column_number = number[pairs.rows, rows], number[pairs.columns, columns]
         start = self.numbering.indptr[column_number]
         at = start[:, None, :] + offset[:, None, None] + rank[pairs.rows, rows][:, :, None]

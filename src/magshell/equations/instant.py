@@ -77,11 +77,6 @@ class Increment:
         return -1.0 * self
 
 
-def moved(state: State, increment: Increment) -> State:
-    """A state after an increment."""
-    return state.moved(increment.nodal, increment.alpha)
-
-
 def difference(state: State, start: State) -> Increment:
     """The increment that moves `start` to a state."""
     return Increment(*state.increment_from(start))

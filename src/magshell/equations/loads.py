@@ -7,9 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
+from magshell.equations.dependence import Dependence, Levers
 from magshell.equations.frames import to_frames
 from magshell.equations.insertion import Insertion
 from magshell.equations.instant import Increment, Instant, Prediction, Weights
+from magshell.equations.nodal import NodalBlocks
 from magshell.equations.term import Contribution, squares_by_kind
 from magshell.model.course import Loading
 from magshell.model.loads import Applied, Pairs
@@ -32,15 +34,17 @@ class LoadTerm:
         self._applied, self._constraints = applied, constraints
         self._pairs = [one.pairs for one in applied]
 
-    def place(self, insertion: Insertion) -> None:
+    def place(self, insertion: Insertion, dependence: Dependence) -> None:
         """Tell the term where its blocks go."""
-        self._at = [None if pairs is None else insertion.blocks(pairs) for pairs in self._pairs]
         free = insertion.numbering.number >= 0
         undeformed = State.undeformed(len(free), 0, 0)
-        carrying = np.zeros(len(free), dtype=bool)
+        loaded, carrying = np.zeros((2, len(free)), dtype=bool)
         for one in self._applied:
-            couples = np.flatnonzero(np.any(one.forces(undeformed)[:, COLUMNS["omega"]], axis=1))
-            carrying[couples] = True
+            forces = one.forces(undeformed)
+            carrying[np.flatnonzero(np.any(forces[:, COLUMNS["omega"]], axis=1))] = True
+            loaded[np.flatnonzero(np.any(forces[:, :6], axis=1))] = True
+        self._dependence = dependence
+        self._places = NodalBlocks(insertion, dependence, [pairs for pairs in self._pairs if pairs is not None], loaded)
         nodes = np.flatnonzero(carrying & np.all(free[:, COLUMNS["omega"]], axis=1))
         self._couples = Pairs("omega", "omega", nodes, nodes)
         self._couples_at = insertion.blocks(self._couples)
@@ -64,12 +68,15 @@ class LoadTerm:
     ) -> Contribution:
         """See `Term`."""
         forces = self.forces(instant.state, instant.loading.loads)
+        levers = self._dependence.levers(instant.state)
         if insertion is not None and self._applied:
-            self._insert(instant, weights, insertion, forces)
-        residual = -to_frames(self._constraints, forces)
+            self._insert(instant, weights, insertion, forces, levers)
+        residual = -to_frames(self._constraints, self._dependence.gathered(forces, levers))
         return Contribution(residual, residual, squares_by_kind(residual), 0.0)
 
-    def _insert(self, instant: Instant, weights: Weights, insertion: Insertion, forces: FloatArray) -> None:
+    def _insert(
+        self, instant: Instant, weights: Weights, insertion: Insertion, forces: FloatArray, levers: Levers
+    ) -> None:
         """Add minus the derivative of the forces, and a transport of the couples.
 
         Elements differentiate in the chart exp(ϑ) R̃, in which a couple c on the spins of the new state is
@@ -77,17 +84,18 @@ class LoadTerm:
         the loads' couple where no rotation is held. Where exactly one is, the loops over elements have all of c, loads
         and reaction; where more are, [c]× does not meet two free rotations.
         """
-        loads = zip(instant.loading.loads, self._applied, self._pairs, self._at, strict=True)
-        for amplitude, one, pairs, at in loads:
-            if amplitude and at is not None and pairs is not None:
-                insertion.add_blocks(pairs, at, weights.displacement * amplitude * one.stiffness(instant.state))
+        loads = zip(instant.loading.loads, self._applied, self._pairs, strict=True)
+        blocks = [amplitude * one.stiffness(instant.state) for amplitude, one, pairs in loads if pairs is not None]
+        self._places.insert(weights.displacement, forces, blocks, levers)
         if self._couples.rows.size:
             couples = forces[self._couples.rows, COLUMNS["omega"]]
             insertion.add_blocks(self._couples, self._couples_at, -0.5 * weights.displacement * cross_matrix(couples))
 
     def load_rate(self, instant: Instant, rate: Loading) -> FloatArray:
         """See `Term`."""
-        return -to_frames(self._constraints, self.forces(instant.state, rate.loads))
+        forces = self.forces(instant.state, rate.loads)
+        gathered = self._dependence.gathered(forces, self._dependence.levers(instant.state))
+        return -to_frames(self._constraints, gathered)
 
     def predict(self, instant: Instant, increment: Increment) -> Prediction:
         """See `Term`."""

@@ -9,6 +9,7 @@ import scipy.sparse as sp
 
 from magshell.arrays import AnyArray, IntArray
 from magshell.model.rows import Rows
+from magshell.shell.unknowns import COLUMNS
 
 Ordering = Callable[[sp.csr_array], IntArray]
 
@@ -25,7 +26,7 @@ class Numbering:
     cliques : sequence of ndarray, shape (n, m)
         Rows that are coupled with each other, row by row.
     ordering : callable
-        From the graph of the nodes (nodes, nodes) to their order of elimination.
+        From the graph of the mesh nodes (nodes, nodes) to their order of elimination; rigid bodies come last.
 
     Attributes
     ----------
@@ -34,24 +35,27 @@ class Numbering:
     number : ndarray, shape (rows, 11)
         Equation, -1 where fixed or absent. Rows that share an unknown share its equation.
     rank : ndarray, shape (rows, 11)
-        Equation minus the first one of the mesh node.
+        Equation minus the first one of its place.
+    place : ndarray, shape (rows, 11)
+        Mesh node or rigid body at which each unknown is.
+    one_rotation_held : ndarray of bool, shape (rows,)
     indptr, indices : ndarray
         Of the tangent, compressed columns.
     """
 
     def __init__(self, rows: Rows, free: AnyArray, cliques: Sequence[IntArray], ordering: Ordering) -> None:
-        self._of = rows.of
-        graph = graph_of([rows.of[clique] for clique in cliques], rows.nodes)
-        order = ordering(graph)
-        counts = np.bincount(rows.of, free.sum(axis=1), minlength=rows.nodes).astype(np.int64)
-        first = np.empty(rows.nodes, dtype=np.int64)
+        graph, count = place_graph(rows, cliques), rows.places
+        order = np.append(ordering(sp.csr_array(graph[: rows.nodes, : rows.nodes])), np.arange(rows.nodes, count))
+        counts = np.bincount(rows.of, free.sum(axis=1), minlength=count).astype(np.int64)
+        first = np.empty(count, dtype=np.int64)
         first[order] = np.cumsum(counts[order]) - counts[order]
-        by_node = np.argsort(rows.of, kind="stable")
+        by_place = np.argsort(rows.of, kind="stable")
         rank = np.empty(free.shape, dtype=np.int64)
-        rank[by_node] = np.cumsum(free[by_node]).reshape(free.shape) - 1
+        rank[by_place] = np.cumsum(free[by_place]).reshape(free.shape) - 1
         rank -= (np.cumsum(counts) - counts)[rows.of][:, None]
-        self.rank = rows.shared(rank)
+        self.place, self.rank = rows.place, rows.shared(rank)
         self.number = rows.shared(np.where(free, first[rows.of][:, None] + rank, -1))
+        self.one_rotation_held: AnyArray = np.sum(self.number[:, COLUMNS["omega"]] < 0, axis=1) == 1
         self.equations = self.number[free]
         self.dofs = int(counts.sum())
         self._set_pattern(graph, order, counts)
@@ -78,9 +82,17 @@ class Numbering:
         self.indices = rows[index].astype(np.int32)
 
     def offsets(self, columns: IntArray, rows: IntArray) -> IntArray:
-        """Place of the first equation of nodes `rows` in the columns of nodes `columns`, from the columns' start."""
-        found = self._offsets[self._of[columns.ravel()], self._of[rows.ravel()]]
+        """Index of the first equation of places `rows` in the columns of places `columns`, from the columns' start."""
+        found = self._offsets[columns.ravel(), rows.ravel()]
         return np.asarray(found, dtype=np.int64).reshape(columns.shape) - 1
+
+
+def place_graph(rows: Rows, cliques: Sequence[IntArray]) -> sp.csr_array:
+    """Graph (places, places) of what is coupled."""
+    if rows.plain:
+        return graph_of(cliques, rows.places)
+    moved = rows.place[:, COLUMNS["u"].start]
+    return graph_of([np.concatenate([rows.of[clique], moved[clique]], axis=1) for clique in cliques], rows.places)
 
 
 def graph_of(cliques: Sequence[IntArray], nodes: int) -> sp.csr_array:

@@ -31,15 +31,19 @@ class Destination(NamedTuple):
     Attributes
     ----------
     elements : Elements
+    slot : ndarray, shape (values,)
+        Place of the element at which each value is: its nodes, and where unknowns of one node are at two places (on
+        rigid bodies) once more its nodes, for φ and s.
     entry : ndarray, shape (elements, values)
         Node and column of each value, as places of flat nodal arrays.
     number, rank : ndarray, shape (nodes, 11)
     indptr : ndarray, shape (equations + 1,)
-    offset : ndarray, shape (elements, m, m)
-        Of the first row of node I in the columns of node J, at [e, J, I].
+    offset : ndarray, shape (elements, slots, slots)
+        Of the first row of slot I in the columns of slot J, at [e, J, I].
     """
 
     elements: Elements
+    slot: IntArray
     entry: IntArray
     number: IntArray
     rank: IntArray
@@ -84,10 +88,10 @@ def turn_matrices(to: Destination, first: int, K: FloatArray, frame_of: IntArray
 def add_matrices(to: Destination, first: int, K: FloatArray, weight: float, data: FloatArray) -> None:
     """Add transposed matrices K (range, values, values) of elements from `first` on to the tangent's values.
 
-    The rows of one node lie side by side in a column.
+    The rows of one place lie side by side in a column.
     """
     node, component = to.elements.node, to.elements.component
-    values, m = len(node), to.elements.nodes.shape[1]
+    values, m = len(node), to.offset.shape[1]
     free, rank = np.zeros(values, dtype=np.int64), np.zeros(values, dtype=np.int64)
     place = np.zeros((m, values), dtype=np.int64)
     for e in range(first, min(first + len(K), len(to.elements.nodes))):
@@ -98,10 +102,10 @@ def add_matrices(to: Destination, first: int, K: FloatArray, weight: float, data
                 count += 1
         for J in range(m):
             for k in range(count):
-                place[J, k] = to.offset[e, J, node[free[k]]] + rank[k]
+                place[J, k] = to.offset[e, J, to.slot[free[k]]] + rank[k]
         for f in range(count):
             l = free[f]
-            row, places = K[e - first, l], place[node[l]]
+            row, places = K[e - first, l], place[to.slot[l]]
             start = to.indptr[to.number[nodes[node[l]], component[l]]]
             column = data[start:]
             if free[count - 1] == count - 1:  # the first values, all of them

@@ -67,8 +67,7 @@ class ShellTerm:
         """Tell the term where its values go."""
         self._to: Destination = destination(self.elements, numbering)
         self._constraints = constraints
-        spins = numbering.number[:, COLUMNS["omega"]]
-        self._transported: AnyArray = np.sum(spins < 0, axis=1) == 1
+        self._transported: AnyArray = numbering.one_rotation_held
 
     def couplings(self) -> Sequence[IntArray]:
         """See `Term`."""

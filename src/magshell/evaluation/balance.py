@@ -87,14 +87,13 @@ def balance(discretisation: Discretisation, state: State, loading: Loading, resi
     discretisation : Discretisation
     state : State
     loading : Loading
-    residual : ndarray, shape (nodes, 11)
+    residual : ndarray, shape (rows, 11)
         Of that state, in the nodes' frames: at held components what the supports exert.
     """
-    nodes = len(discretisation.mesh.points)
     reaction = held_forces(discretisation, residual)
-    load = discretisation.loads.forces(state, loading.loads)[:nodes]
-    position = discretisation.mesh.points + state.u[:nodes]
-    director = discretisation.normals + state.w[:nodes]
+    load = discretisation.loads.forces(state, loading.loads)
+    position = discretisation.rows.points + state.u
+    director = discretisation.rows.normals + state.w
     moments = cross(position, reaction[:, :3]) + cross(director, reaction[:, 3:6]) + reaction[:, COLUMNS["omega"]]
     load_moments = cross(position, load[:, :3]) + cross(director, load[:, 3:6]) + load[:, COLUMNS["omega"]]
     torque, torque_scale = magnetic_torque(discretisation, state, loading.flux_density)

@@ -65,7 +65,7 @@ class Converged:
 
     @cached_property
     def support_forces(self) -> FloatArray:
-        """Forces of all supports on u, w, φ and ω (nodes, 10), global axes."""
+        """Forces of all supports on the unknowns of the rows (rows, 11), global axes."""
         return held_forces(self.discretisation, self.assembly.residual)
 
     @cached_property
@@ -145,7 +145,9 @@ class Converged:
 
     def element_directors(self) -> FloatArray:
         """Director at the nodes of each element (elements, 8, 3): where sections differ each has its own length."""
-        return (1.0 + self.element_stretch()[..., None]) * self.director()[self.mesh.elements]
+        rows = self.discretisation.rows
+        d = self._of_elements(rows.normals + self.state.w, self.discretisation.reference.body.layout.w)
+        return np.asarray((1.0 + self.element_stretch()[..., None]) * d)
 
     def element_stretch(self) -> FloatArray:
         """Stretch s of the director at the nodes of each element (elements, 8), zero but where sections differ."""
@@ -156,7 +158,7 @@ class Converged:
         return self._of_elements(self.state.phi, self.discretisation.reference.body.layout.phi)
 
     def _of_elements(self, of_rows: FloatArray, carriers: int) -> FloatArray:
-        """A field of the rows at the nodes of each element (elements, 8); its first nodes carry it."""
+        """A field of the rows at the nodes of each element (elements, 8, ...); its first nodes carry it."""
         values = of_rows[self.discretisation.reference.body.elements]
         if carriers == 4:
             corners = values[:, :4]

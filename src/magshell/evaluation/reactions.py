@@ -45,22 +45,21 @@ class Reaction(NamedTuple):
 
 
 def held_forces(discretisation: Discretisation, residual: FloatArray) -> FloatArray:
-    """Forces (nodes, 11) of all supports, global axes, from the residual in the nodes' frames."""
+    """Forces (rows, 11) of all supports, global axes, from the residual in the nodes' frames."""
     held = discretisation.model.constraints.fixed & discretisation.carried
-    return discretisation.to_global(np.where(held, residual, 0.0))[: len(discretisation.mesh.points)]
+    return discretisation.to_global(np.where(held, residual, 0.0))
 
 
 def reactions(discretisation: Discretisation, state: State, forces: FloatArray) -> list[Reaction]:
-    """The reaction of each named support, from the forces of all supports (nodes, 11), global axes."""
-    nodes = len(discretisation.mesh.points)
-    x, d = discretisation.mesh.points + state.displacement(nodes), discretisation.normals + state.w[:nodes]
+    """The reaction of each named support, from the forces of all supports (rows, 11), global axes."""
+    x, d = discretisation.rows.points + state.u, discretisation.rows.normals + state.w
     found = []
     for support in discretisation.model.named_supports:
         at = support.nodes
         f_u, f_w, f_ω = (
             np.einsum("nij,nj->ni", support.shares[field], forces[at, COLUMNS[field]]) for field in ("u", "w", "omega")
         )
-        point = support.weights @ x if support.point is None else support.point
+        point = support.weights @ x[: len(support.weights)] if support.point is None else support.point
         moment = (cross(x[at] - point, f_u) + cross(d[at], f_w) + f_ω).sum(axis=0)
         found.append(Reaction(support.name, point, f_u.sum(axis=0), moment))
     return found

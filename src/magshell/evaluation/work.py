@@ -43,7 +43,7 @@ class Work(NamedTuple):
 
 
 class Acting(NamedTuple):
-    """Nodal forces that do work at a state, (nodes, 11), global axes; of the field only where it has no potential."""
+    """Nodal forces that do work at a state, (rows, 11), global axes; of the field only where it has no potential."""
 
     state: State
     applied: FloatArray
@@ -60,7 +60,7 @@ def acting(
 ) -> Acting:
     """What does work at a state, with its residual (in the nodes' frames) and the supports' forces (global axes)."""
     applied = discretisation.loads.forces(state, loading.loads)
-    applied[: len(supports)] += supports
+    applied += supports
     if is_conservative(discretisation.model.coupling):
         return Acting(state, applied, None)
     field = np.zeros_like(applied)

@@ -23,17 +23,16 @@ from magshell.model.loads import Applied, Load
 from magshell.model.loads.mass import Mass, whole_mass
 from magshell.model.named_supports import NamedSupport, named_supports
 from magshell.model.parts import REST, Part
+from magshell.model.places import Places
 from magshell.model.rigid import check_supported
+from magshell.model.rigid_body import RigidBody
 from magshell.model.rows import Rows, rows_of
 from magshell.model.shell import Shell
 from magshell.model.stages import Stage
 from magshell.model.supports import Constraints, Support, SymmetryPlane, resolve
 from magshell.multipliers import amplitudes
-from magshell.shell.normals import nodal_normals
 from magshell.shell.state import State
 
-# Sine of the angle between mid-surface and mirror plane below which the shell does not cross the plane.
-TOUCHING = 1e-6
 NO_FIELD = UniformField((0.0, 0.0, 0.0))
 
 
@@ -62,6 +61,8 @@ class Model:
         resultants.
     outputs : sequence of str, optional
         Outputs of `magshell.evaluation.outputs` that files and pages hold beside those that they always do.
+    rigid : sequence of RigidBody, optional
+        Groups of the shell that move as rigid bodies.
 
     Attributes
     ----------
@@ -91,6 +92,7 @@ class Model:
     stages: Sequence[Stage] = ()
     local_axis: ArrayLike = (1.0, 0.0, 0.0)
     outputs: Sequence[str] = ()
+    rigid: Sequence[RigidBody] = ()
     rows: Rows = dataclasses.field(init=False, repr=False)
     constraints: Constraints = dataclasses.field(init=False, repr=False)
     applied: tuple[Applied, ...] = dataclasses.field(init=False, repr=False)
@@ -108,11 +110,14 @@ class Model:
         put(self, "stages", tuple(self.stages) or (Stage(),) * self._longest_history())
         put(self, "local_axis", _direction("local_axis", self.local_axis))
         put(self, "outputs", tuple(self.outputs))
-        put(self, "rows", rows_of(self.shell))
-        constraints = resolve(mesh, self.supports, self.shell.carriers, len(self.stages))
+        put(self, "rigid", tuple(self.rigid))
+        planes = [support for support in self.supports if isinstance(support, SymmetryPlane)]
+        put(self, "rows", rows_of(self.shell, self.rigid, planes))
+        places = Places(mesh, self.rows.carriers, tuple(self.rigid))
+        constraints = resolve(places, self.supports, len(self.stages))
         put(self, "constraints", self.rows.constraints(constraints))
-        put(self, "named_supports", named_supports(self.shell, self.supports))
-        put(self, "applied", tuple(load.applied(self.shell, self.normals) for load in self.loads))
+        put(self, "named_supports", named_supports(self.shell, places, self.supports))
+        put(self, "applied", tuple(load.applied(self.shell, self.rows) for load in self.loads))
         nodes = {}
         for name, position in self.probes.items():
             try:
@@ -122,7 +127,7 @@ class Model:
         put(self, "probe_nodes", MappingProxyType(nodes))
         put(self, "_ends", self._amounts_at_the_ends())
         self._check_targets()
-        check_supported(mesh, self.normals, constraints)
+        check_supported(places, self.rows.normals[: places.number], constraints)
         self._check_the_micro_rotation_matters()
         self._check_something_loads()
         for fault in symmetry.broken(self):
@@ -206,7 +211,7 @@ class Model:
         InputError
             The shell has no density.
         """
-        return whole_mass(self.shell, self.normals)
+        return whole_mass(self.shell, self.rows)
 
     @property
     def largest_field(self) -> float:
@@ -239,22 +244,14 @@ class Model:
         """The loading in the first stage."""
         return self.course(0).at(load_factor)
 
-    @cached_property
+    @property
     def normals(self) -> FloatArray:
         """Unit normals (nodes, 3) of the undeformed mid-surface, averaged over the elements of a node.
 
         On a mirror plane they lie in it, as the average with the mirror image does, unless the shell touches the plane.
+        At a joint they are those of one of its sheets; `rows` has all.
         """
-        mesh = self.shell.mesh
-        normals = nodal_normals(mesh.points, mesh.elements)
-        for support in self.supports:
-            if isinstance(support, SymmetryPlane):
-                nodes, plane = mesh.nodes_of(support.group), support.unit_normal
-                inside = normals[nodes] - np.outer(normals[nodes] @ plane, plane)
-                length = np.linalg.norm(inside, axis=1)
-                meets = length > TOUCHING
-                normals[nodes[meets]] = inside[meets] / length[meets, None]
-        return normals
+        return self.rows.normals[: self.rows.nodes]
 
 
 def _direction(where: str, value: ArrayLike) -> FloatArray:

@@ -19,6 +19,7 @@ import numpy as np
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.model.loads.distribution import centroid_weights
+from magshell.model.places import Places
 from magshell.model.shell import Shell
 from magshell.model.supports import Support
 
@@ -34,9 +35,9 @@ class NamedSupport(NamedTuple):
     ----------
     name : str
     nodes : ndarray, shape (n,)
-        That are held.
-    weights : ndarray, shape (nodes,)
-        The mean of the nodes' positions with these is the centroid.
+        Nodes, or places of rigid bodies, that are held.
+    weights : ndarray, shape (places,)
+        The mean of the places' positions with these is the centroid.
     point : ndarray, shape (3,), or None
         About which the moment of the reaction is given, m; None: the centroid.
     shares : mapping of str to (n, 3, 3) ndarray
@@ -55,7 +56,7 @@ def name_of(support: Support) -> str:
     return support.group if support.name is None else support.name
 
 
-def named_supports(shell: Shell, supports: Sequence[Support]) -> tuple[NamedSupport, ...]:
+def named_supports(shell: Shell, places: Places, supports: Sequence[Support]) -> tuple[NamedSupport, ...]:
     """Supports by name, in the order in which the names first appear.
 
     Raises
@@ -63,24 +64,34 @@ def named_supports(shell: Shell, supports: Sequence[Support]) -> tuple[NamedSupp
     InputError
         A name is no text, a point is no point, or the supports of one name have different points.
     """
-    mesh = shell.mesh
     by_name: dict[str, list[Support]] = {}
     for support in supports:
         name = name_of(support)
         if not isinstance(name, str) or not name.strip():
             raise InputError(f"support on '{support.group}': name is {name!r}; it must be a text")
         by_name.setdefault(name, []).append(support)
-    held = {name: _directions(shell, own) for name, own in by_name.items()}
+    held = {name: _directions(places, own) for name, own in by_name.items()}
     shares = _shares(list(held.values()))
     found = []
     for name, own, share in zip(by_name, by_name.values(), shares, strict=True):
-        nodes = np.unique(np.concatenate([mesh.nodes_of(support.group) for support in own]))
+        nodes = np.unique(np.concatenate([places.named(support.group) for support in own]))
         matrices = {field: np.zeros((len(nodes), 3, 3)) for field in FIELDS}
         for (node, field), matrix in share.items():
             matrices[field][np.searchsorted(nodes, node)] = matrix
         groups = list(dict.fromkeys(support.group for support in own))
-        found.append(NamedSupport(name, nodes, centroid_weights(shell, groups), _point(name, own), matrices))
+        found.append(NamedSupport(name, nodes, _centroid(shell, places, groups), _point(name, own), matrices))
     return tuple(found)
+
+
+def _centroid(shell: Shell, places: Places, groups: Sequence[str]) -> FloatArray:
+    """Weights (places,) whose mean of positions is the centroid: of rigid bodies that of their reference points."""
+    weights = np.zeros(places.number)
+    bodies = [places.named(group)[0] for group in groups if places.is_body(group)]
+    if bodies:
+        weights[bodies] = 1.0 / len(bodies)
+    else:
+        weights[: len(shell.mesh.points)] = centroid_weights(shell, groups)
+    return weights
 
 
 def _point(name: str, supports: Sequence[Support]) -> FloatArray | None:
@@ -101,15 +112,15 @@ def _point(name: str, supports: Sequence[Support]) -> FloatArray | None:
     return points[0] if points else None
 
 
-def _directions(shell: Shell, supports: Sequence[Support]) -> dict[tuple[int, str], FloatArray]:
+def _directions(places: Places, supports: Sequence[Support]) -> dict[tuple[int, str], FloatArray]:
     """By node and field, the directions (m, 3) that supports hold."""
     found: dict[tuple[int, str], list[FloatArray]] = {}
     for support in supports:
         for condition in support.conditions():
             if condition.field not in FIELDS:
                 continue
-            members = shell.mesh.nodes_of(condition.group)
-            for node in members[shell.carriers[condition.field][members]]:
+            members = places.named(condition.group)
+            for node in members[places.carriers[condition.field][members]]:
                 found.setdefault((int(node), condition.field), []).append(condition.direction)
     return {place: np.array(directions) for place, directions in found.items()}
 

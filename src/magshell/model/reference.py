@@ -12,6 +12,7 @@ from magshell.model.shell import Shell
 from magshell.shell.body import Make, Reference, Surface, of_elements, reference_of
 from magshell.shell.geometry import Sections, least_shifts
 from magshell.shell.shear_profile import Moduli, profile
+from magshell.shell.ties import RIGID, Ties
 
 
 def reference_of_model(model: Model, make: Make) -> Reference:
@@ -25,15 +26,33 @@ def reference_of_model(model: Model, make: Make) -> Reference:
     shell, elements, rows = model.shell, model.shell.mesh.elements, model.rows
     surface = Surface(
         elements=rows.elements,
-        stretched=rows.elements >= rows.nodes,
+        ties=_ties_of(model),
         points=shell.mesh.points[elements],
-        normals=model.normals[elements],
+        normals=rows.normals[rows.elements],
         element=shell.element,
         micro_rotation=shell.micro_rotation,
     )
     reference = reference_of(surface, make)
     _check_thickness(model, least_shifts(reference.geometry, faces_of(model.shell)))
     return reference
+
+
+def _ties_of(model: Model) -> Ties:
+    """What ties the rows, as the kernels read it."""
+    rows, shell = model.rows, model.shell
+    kind, body = rows.kind[rows.elements], rows.body[rows.elements]
+    host = np.tile(np.arange(8), (len(kind), 1))
+    bare = (kind == RIGID) & ~shell.carriers["omega"][shell.mesh.elements]
+    for element, node in np.argwhere(bare).tolist():
+        able = np.flatnonzero((body[element] == body[element, node]) & ~bare[element])
+        if not able.size:
+            raise InputError(
+                f"rigid body: node {rows.of[rows.elements[element, node]]} is a mid-side node and no corner of element "
+                f"{element} belongs to the body; add the ends of its edge to the group"
+            )
+        host[element, node] = able[0]
+    arm = np.where(rows.body[:, None] >= 0, rows.points - rows.points[rows.body], 0.0)
+    return Ties(kind, host, rows.body, arm)
 
 
 def make_of(model: Model) -> Make:

@@ -28,13 +28,17 @@ reversing both is a further symmetry of the energy, and gives σ = 1.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 from numpy.typing import ArrayLike
 
-from magshell.arrays import FloatArray
+from magshell.arrays import AnyArray, FloatArray
 
 # Sine of an angle that is round-off of numbers as people type them: 0.06°.
 TYPED = 1e-3
+# Sine of the angle between surface and mirror plane below which the surface does not cross the plane.
+TOUCHING = 1e-6
 
 
 def polar(vectors: ArrayLike, normal: FloatArray) -> FloatArray:
@@ -66,3 +70,17 @@ def angle_to_plane(vector: FloatArray, normal: FloatArray) -> float:
     """Angle between a vector and the plane, degrees from 0 to 90."""
     sine = abs(float(vector @ normal)) / float(np.linalg.norm(vector))
     return float(np.degrees(np.arcsin(min(sine, 1.0))))
+
+
+def in_mirror_planes(normals: FloatArray, planes: Iterable[tuple[AnyArray, FloatArray]]) -> FloatArray:
+    """Normals (n, 3) of a surface, in the planes that some of them meet: the average with the mirror image.
+
+    `planes` are pairs of a mask (n,) and a unit normal. Where the surface touches a plane nothing changes.
+    """
+    for meets, plane in planes:
+        inside = normals[meets] - np.outer(normals[meets] @ plane, plane)
+        length = np.linalg.norm(inside, axis=1)
+        crosses = length > TOUCHING
+        at = np.flatnonzero(meets)[crosses]
+        normals[at] = inside[crosses] / length[crosses, None]
+    return normals

@@ -6,7 +6,7 @@ import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
-from magshell.mesh import Mesh
+from magshell.model.places import Places
 from magshell.model.supports import Constraints
 
 
@@ -42,12 +42,17 @@ def _cross(vectors: FloatArray) -> FloatArray:
     return np.stack([np.stack(row, axis=-1) for row in ((zero, -z, y), (z, zero, -x), (-y, x, zero))], axis=-2)
 
 
-def check_supported(mesh: Mesh, normals: FloatArray, constraints: Constraints) -> None:
-    """Raise an InputError that names the free rigid motion of a part that can still move."""
-    parts = mesh.parts
+def check_supported(places: Places, normals: FloatArray, constraints: Constraints) -> None:
+    """Raise an InputError that names the free rigid motion of a part that can still move.
+
+    `normals` are those of the places (places, 3), zero for rigid bodies.
+    """
+    mesh, parts = places.mesh, _parts(places)
     for number, elements in enumerate(parts):
         nodes = np.unique(mesh.elements[elements])
-        motions = free_motions(mesh.points, normals, nodes, constraints)
+        bodies = places.owner[nodes]
+        nodes = np.append(nodes, np.unique(bodies[bodies >= 0]))
+        motions = free_motions(places.points, normals, nodes, constraints)
         if len(motions) == 0:
             continue
         which = "the body" if len(parts) == 1 else f"part {number + 1} of {len(parts)} (element {elements[0]} …)"
@@ -59,6 +64,22 @@ def check_supported(mesh: Mesh, normals: FloatArray, constraints: Constraints) -
         raise InputError(
             f"supports: {which} can still move as a rigid body: {_describe(motions)}. Add a support against it"
         )
+
+
+def _parts(places: Places) -> list[IntArray]:
+    """Elements of each part of the mesh; parts that a rigid body joins are one."""
+    parts, owner = places.mesh.parts, places.owner
+    if not places.bodies:
+        return parts
+    bodies = [np.unique(owner[np.unique(places.mesh.elements[elements])]) for elements in parts]
+    joined: list[tuple[set[int], list[IntArray]]] = []
+    for elements, own in zip(parts, bodies, strict=True):
+        of, members = set(own[own >= 0].tolist()), [elements]
+        for other in [one for one in joined if one[0] & of]:
+            joined.remove(other)
+            of, members = of | other[0], other[1] + members
+        joined.append((of, members))
+    return [np.concatenate(members) for _, members in joined]
 
 
 def _describe(motions: FloatArray) -> str:

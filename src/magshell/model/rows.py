@@ -1,97 +1,243 @@
-"""Rows of the nodal arrays: the nodes of the mesh, and one more for each further section that meets at a node.
+"""Rows of the nodal arrays: the nodes of the mesh, the rigid bodies, and one more for each further sheet or section.
 
-The stretch φ and the length of the director jump where thickness, layers, material or offset change. Elements on the
-two sides of such a border have rows of their own there. They share u, w and the micro-rotation of the mesh node; the
-further ones have their own φ and a stretch s of the director.
+At a joint several sheets meet, each with a director of its own; at a border the thickness, layers, material or offset
+change. There elements have rows of their own. Rows share unknowns with others, and depend on them:
+
+* All rows of a node share u. Those of one piece (`sheets.py`) share the micro-rotation.
+* Sections of one sheet share the director; the further ones have a stretch s of it.
+* At a joint, where the piece has several sheets, the micro-rotation R carries the directors, d = (1 + s) R D.
+* On a rigid body u and R are those of its reference point, u = u_r + (R - I)(X - X_r), d = R D.
+
+The thickness stretch φ is each row's own.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray, IntArray
+from magshell.errors import InputError
+from magshell.model.reflection import in_mirror_planes
+from magshell.model.rigid_body import RigidBody, members_of
+from magshell.model.sheets import Sheets, sheets_of
 from magshell.model.shell import Shell
-from magshell.model.supports import Constraints
+from magshell.model.supports import FRAME_OF_FIELD, Constraints, SymmetryPlane
+from magshell.shell.normals import corner_normals
+from magshell.shell.ties import FREE, RIGID, STRETCHED, TURNED
 from magshell.shell.unknowns import COLUMNS, COMPONENTS
 
 # Thicknesses that differ by less, relative, are the same.
 SAME = 1e-9
-SHARED = np.ones(COMPONENTS, dtype=bool)
-SHARED[[COLUMNS["phi"].start, COLUMNS["s"].start]] = False
+U, W, PHI, OMEGA, S = (COLUMNS[field] for field in ("u", "w", "phi", "omega", "s"))
 
 Columns = TypeVar("Columns", bound=AnyArray)
 
 
 class Rows(NamedTuple):
-    """Who has which row.
+    """Who has which row. The nodes of the mesh come first, then the rigid bodies, then the further rows of nodes.
 
     Attributes
     ----------
-    nodes : int
-        Number of mesh nodes.
+    nodes, places : int
+        Number of mesh nodes, and of mesh nodes and bodies.
     of : ndarray, shape (rows,)
-        Mesh node; that of the first rows is their own number.
+        Mesh node or body; that of the first rows is their own number.
     elements : ndarray, shape (elements, 8)
         Rows of the elements.
+    source : ndarray, shape (rows, 11)
+        Row whose unknown this one is.
     carried : ndarray of bool, shape (rows, 11)
         Which unknowns a row has for itself.
+    kind : ndarray, shape (rows,)
+        What the director is: `FREE`, `STRETCHED`, `TURNED` (by the micro-rotation) or `RIGID`.
+    body : ndarray, shape (rows,)
+        Row of the rigid body that moves this one; -1 for none.
+    points, normals : ndarray, shape (rows, 3)
+        Undeformed position, m, and unit normal of the sheet; zero for bodies.
+    joined : ndarray, shape (joints,)
+        Mesh nodes at which a rotation carries the directors of several sheets.
+    hinged : ndarray, shape (n,)
+        Mesh nodes at which pieces share u only.
     """
 
     nodes: int
+    places: int
     of: IntArray
     elements: IntArray
+    source: IntArray
     carried: AnyArray
+    kind: IntArray
+    body: IntArray
+    points: FloatArray
+    normals: FloatArray
+    joined: IntArray
+    hinged: IntArray
 
     @property
-    def copies(self) -> AnyArray:
-        """Rows that are not the first of their mesh node."""
-        return np.arange(self.nodes, len(self.of))
+    def plain(self) -> bool:
+        """Whether every row has all its unknowns for itself."""
+        return len(self.of) == self.nodes
+
+    @property
+    def place(self) -> IntArray:
+        """Mesh node or body (rows, 11) at which each unknown is."""
+        return self.of[self.source]
+
+    @property
+    def carriers(self) -> dict[str, AnyArray]:
+        """Which places carry the fields u, w, phi and omega: boolean arrays (places,)."""
+        carriers: dict[str, AnyArray] = {}
+        for field in FRAME_OF_FIELD | {"phi": 3}:
+            carriers[field] = np.zeros(self.places, dtype=bool)
+            carriers[field][self.of[self.carried[:, COLUMNS[field].start]]] = True
+        return carriers
 
     def shared(self, nodal: Columns) -> Columns:
-        """Nodal columns (rows, 11) whose shared ones are those of the mesh nodes."""
-        if len(self.of) > self.nodes:
-            nodal[np.ix_(self.copies, SHARED)] = nodal[np.ix_(self.of[self.copies], SHARED)]
+        """Nodal columns (rows, 11) whose shared ones are those of their source."""
+        if not self.plain:
+            nodal[:] = nodal[self.source, np.arange(COMPONENTS)]
         return nodal
 
     def folded(self, forces: FloatArray) -> FloatArray:
         """Forces (rows, 11) summed at those that share their unknowns: the transpose of `shared`."""
-        if len(self.of) > self.nodes:
-            at = np.ix_(self.copies, SHARED)
-            np.add.at(forces, (self.of[self.copies][:, None], np.flatnonzero(SHARED)), forces[at])
-            forces[at] = 0.0
-        return forces
+        if self.plain:
+            return forces
+        total = np.zeros_like(forces)
+        np.add.at(total, (self.source, np.arange(COMPONENTS)), forces)
+        return total
 
     def constraints(self, constraints: Constraints) -> Constraints:
-        """Constraints of the mesh nodes, for every row. A held φ is that of all sections."""
-        fixed, values = constraints.fixed[self.of], constraints.values[:, self.of]
-        return constraints._replace(fixed=fixed, values=values, frame_of=constraints.frame_of[self.of])
+        """Constraints of the places, for every row. A held φ is that of all sections and sheets."""
+        if self.plain:
+            return constraints
+        place, columns = self.place, np.arange(COMPONENTS)
+        frame_of = np.stack(
+            [constraints.frame_of[place[:, COLUMNS[field].start], n] for field, n in FRAME_OF_FIELD.items()], axis=1
+        )
+        fixed, values = constraints.fixed[place, columns].copy(), constraints.values[:, place, columns].copy()
+        clamped = (self.kind == TURNED) & fixed[:, OMEGA].all(axis=1) & constraints.fixed[self.of, W].all(axis=1)
+        fixed[clamped, S] = True
+        return constraints._replace(fixed=fixed, values=values, frame_of=frame_of)
 
 
-def rows_of(shell: Shell) -> Rows:
-    """The rows of a shell."""
-    mesh, count = shell.mesh, len(shell.mesh.points)
-    rest = shell.element.rest_nodes
-    elements, of = mesh.elements.copy(), list(range(count))
+class _Table:
+    """Rows under construction: the mesh node, piece (as its first row) and sheet (likewise) of each."""
+
+    def __init__(self, places: int) -> None:
+        self.of, self.piece, self.sheet = (list(range(places)) for _ in range(3))
+
+    def add(self, node: int) -> int:
+        """One more row of a node, a piece and a sheet of its own."""
+        row = len(self.of)
+        self.of.append(node)
+        self.piece.append(row)
+        self.sheet.append(row)
+        return row
+
+
+def rows_of(shell: Shell, bodies: Sequence[RigidBody] = (), planes: Sequence[SymmetryPlane] = ()) -> Rows:
+    """The rows of a shell with rigid bodies; on mirror planes normals lie in the plane.
+
+    Raises
+    ------
+    InputError
+        Sheets meet in a shell without micro-rotation; a hinge or a rigid body does not fit the mesh.
+    """
+    mesh, nodes = shell.mesh, len(shell.mesh.points)
+    places, sheets = nodes + len(bodies), sheets_of(mesh, shell.hinges)
+    owner = members_of(mesh, tuple(bodies))
+    elements, table = _numbered(shell, sheets, places)
+    of, piece, sheet = (np.array(one) for one in (table.of, table.piece, table.sheet))
+    several = np.zeros(len(of), dtype=bool)
+    several[piece[sheet != piece]] = True
+    several[:nodes] |= sheets.sprung
+    turned = several[piece] | _sprung(sheets, of, nodes)
+    body = np.full(len(of), -1)
+    inside = of < nodes
+    body[inside] = np.where(owner[of[inside]] >= 0, nodes + owner[of[inside]], -1)
+    rigid = body >= 0
+    _check_micro_rotation(shell, of, turned, rigid, bodies)
+    rows = np.arange(len(of))
+    source = np.repeat(rows[:, None], COMPONENTS, axis=1)
+    source[:, U] = np.where(rigid, body, of)[:, None]
+    source[:, OMEGA] = np.where(rigid, body, piece)[:, None]
+    source[:, W] = np.where(turned | rigid, rows, sheet)[:, None]
+    kind = np.where(rigid, RIGID, np.where(turned, TURNED, np.where(rows != sheet, STRETCHED, FREE)))
+    points = np.concatenate([mesh.points, *(body.reference_point(mesh)[None] for body in bodies)])[of]
+    return Rows(
+        nodes=nodes,
+        places=places,
+        of=of,
+        elements=elements,
+        source=source,
+        carried=_carried(shell, elements, of, source, kind),
+        kind=kind,
+        body=body,
+        points=points,
+        normals=_normals(shell, elements, of, sheet, planes),
+        joined=np.unique(of[turned & inside]),
+        hinged=np.unique(of[(piece != of) & inside]),
+    )
+
+
+def _sprung(sheets: Sheets, of: IntArray, nodes: int) -> AnyArray:
+    """Rows at hinges with a spring, which acts on the rotations that carry the directors."""
+    return np.append(sheets.sprung, False)[np.minimum(of, nodes)]
+
+
+def _check_micro_rotation(
+    shell: Shell, of: IntArray, turned: AnyArray, rigid: AnyArray, bodies: Sequence[RigidBody]
+) -> None:
+    if shell.micro_rotation:
+        return
+    if bodies:
+        raise InputError(
+            f"{bodies[0].label}: micro_rotation is False, and a rigid body carries the shell by its micro-rotation; "
+            "leave micro_rotation out"
+        )
+    if turned.any():
+        node = int(of[np.argmax(turned)])
+        raise InputError(
+            f"shell: sheets meet at an angle at node {node}, {_at(shell.mesh.points[node])}, and micro_rotation is "
+            "False; a joint carries its sheets by the micro-rotation, leave micro_rotation out"
+        )
+
+
+def _at(point: FloatArray) -> str:
+    return "({}) mm".format(", ".join(f"{1e3 * x:.4g}" for x in point))
+
+
+def _numbered(shell: Shell, sheets: Sheets, places: int) -> tuple[IntArray, _Table]:
+    """Rows of the elements, in a table of all rows."""
+    mesh, rest = shell.mesh, shell.element.rest_nodes
+    elements, table, count = mesh.elements.copy(), _Table(places), len(mesh.points)
     kind, measures = _sections(shell)
-    corners = mesh.elements[:, :rest].ravel()
-    first = np.empty(count, dtype=np.int64)
-    first[corners[::-1]] = np.arange(corners.size)[::-1]
-    differs = ~_same(kind, measures, np.arange(corners.size), first[corners])
-    order = np.argsort(corners, kind="stable")
-    starts = np.searchsorted(corners[order], np.arange(count + 1))
-    for node in np.unique(corners[differs]).tolist():
-        heads: list[tuple[int, int]] = []
-        for at in order[starts[node] : starts[node + 1]].tolist():
-            row = next((row for head, row in heads if _same(kind, measures, at, head)), None)
+    section = np.full(mesh.elements.shape, -1)
+    section[:, :rest] = np.arange(len(elements) * rest).reshape(-1, rest)
+    corners = mesh.elements.ravel()
+    special = np.zeros(count, dtype=bool)
+    special[sheets.nodes] = True
+    special[_differing(mesh.elements[:, :rest].ravel(), kind, measures, count)] = True
+    order = np.flatnonzero(special[corners])
+    order = order[np.argsort(corners[order], kind="stable")]
+    for group in np.split(order, np.flatnonzero(np.diff(corners[order])) + 1) if order.size else ():
+        node = int(corners[group[0]])
+        heads: list[tuple[int, int, int, int]] = []
+        for at in group.tolist():
+            owner, slot = divmod(at, 8)
+            piece, sheet, here = sheets.piece[owner, slot], sheets.sheet[owner, slot], section[owner, slot]
+            alike = [head for head in heads if head[:2] == (piece, sheet)]
+            row = next((row for *_, head, row in alike if here < 0 or _same(kind, measures, here, head)), None)
             if row is None:
-                row = len(of) if heads else node
-                heads.append((at, row))
-                if row != node:
-                    of.append(node)
-            elements[divmod(at, rest)] = row
-    return Rows(count, np.array(of), elements, _carried(shell, elements, np.array(of)))
+                row = table.add(node) if heads else node
+                table.piece[row] = next((head[3] for head in heads if head[0] == piece), row)
+                table.sheet[row] = alike[0][3] if alike else row
+                heads.append((piece, sheet, here, row))
+            elements[owner, slot] = row
+    return elements, table
 
 
 class _Section(NamedTuple):
@@ -115,6 +261,13 @@ def _sections(shell: Shell) -> tuple[IntArray, FloatArray]:
     return kind.ravel(), measures.reshape(count * rest, most + 1)
 
 
+def _differing(corners: IntArray, kind: IntArray, measures: FloatArray, count: int) -> IntArray:
+    """Nodes at which corners of different sections meet."""
+    first = np.empty(count, dtype=np.int64)
+    first[corners[::-1]] = np.arange(corners.size)[::-1]
+    return np.asarray(corners[~_same(kind, measures, np.arange(corners.size), first[corners])])
+
+
 def _same(kind: IntArray, measures: FloatArray, one: Any, other: Any) -> Any:
     """Whether corners are of one section."""
     scale = np.abs(measures[other]).max(axis=-1)
@@ -122,16 +275,30 @@ def _same(kind: IntArray, measures: FloatArray, one: Any, other: Any) -> Any:
     return (kind[one] == kind[other]) & near
 
 
-def _carried(shell: Shell, elements: IntArray, of: IntArray) -> AnyArray:
+def _carried(shell: Shell, elements: IntArray, of: IntArray, source: IntArray, kind: IntArray) -> AnyArray:
+    nodes = len(shell.mesh.points)
+    at_node = of < nodes
     carried = np.zeros((len(of), COMPONENTS), dtype=bool)
-    carriers, nodes = shell.carriers, len(shell.mesh.points)
-    for field, columns in COLUMNS.items():
-        if field in carriers:
-            carried[:nodes, columns] = carriers[field][:, None]
-    carried[nodes:, COLUMNS["s"]] = True
-    φ = COLUMNS["phi"].start
-    if carried[:, φ].any():
+    for field, carries in shell.carriers.items():
+        carried[at_node, COLUMNS[field]] = carries[of[at_node], None]
+    carried[~at_node, U] = carried[~at_node, OMEGA] = True
+    carried[:, S] = ((kind == STRETCHED) | (kind == TURNED))[:, None] & carried[:, W].any(axis=1, keepdims=True)
+    carried[kind >= TURNED, W] = False
+    carried &= source == np.arange(len(of))[:, None]
+    if carried[:, PHI].any():
         plain = np.concatenate([part.elements for part in shell.parts if not part.layered] or [np.empty(0, dtype=int)])
-        carried[:, φ] = False
-        carried[elements[plain, : shell.element.stretch_nodes], φ] = True
+        soft = plain[~np.all(kind[elements[plain]] == RIGID, axis=1)]
+        carried[:, PHI] = False
+        carried[elements[soft, : shell.element.stretch_nodes], PHI] = True
     return carried
+
+
+def _normals(
+    shell: Shell, elements: IntArray, of: IntArray, sheet: IntArray, planes: Sequence[SymmetryPlane]
+) -> FloatArray:
+    """Unit normals (rows, 3), averaged over the elements of a sheet."""
+    total = np.zeros((len(of), 3))
+    np.add.at(total, sheet[elements].ravel(), corner_normals(shell.mesh.points, shell.mesh.elements).reshape(-1, 3))
+    length = np.linalg.norm(total, axis=1, keepdims=True)
+    normals = np.divide(total, length, out=np.zeros_like(total), where=length > 0.0)[sheet]
+    return in_mirror_planes(normals, [(np.isin(of, shell.mesh.nodes_of(p.group)), p.unit_normal) for p in planes])

@@ -15,6 +15,7 @@ from magshell.magnetics.remanence import Remanence
 from magshell.materials import completed
 from magshell.mesh import Mesh
 from magshell.model.checked import checked_material, positive
+from magshell.model.hinge import Hinge
 from magshell.model.overall import overall_remanence
 from magshell.model.parts import Draft, Heights, Part, completed_drafts, drafts_of, heights_of, parts_of
 from magshell.model.region import NO_REMANENCE, Layer, Region
@@ -60,6 +61,8 @@ class Shell:
         normal, m.
     levels : int, optional
         Gauss points through the thickness of each layer.
+    hinges : sequence of Hinge, optional
+        Edges along which the shell may turn freely, or against a spring.
 
     Raises
     ------
@@ -80,6 +83,7 @@ class Shell:
     layers: Sequence[Layer] = ()
     offset: str | float = "middle"
     levels: int = 2
+    hinges: Sequence[Hinge] = ()
     _drafts: list[Draft] = dataclasses.field(init=False, repr=False)
     _heights: list[Heights] = dataclasses.field(init=False, repr=False)
 
@@ -87,6 +91,7 @@ class Shell:
         put = object.__setattr__
         put(self, "regions", tuple(self.regions))
         put(self, "layers", tuple(self.layers))
+        put(self, "hinges", tuple(self.hinges))
         if self.density is not None:
             put(self, "density", positive("shell: density", self.density, "kg/m^3"))
         if self.thickness is not None and not callable(self.thickness):

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError, suggest
 from magshell.keys import HISTORY, Key
-from magshell.mesh import Mesh
+from magshell.model.places import Places
 from magshell.multipliers import amplitudes
 from magshell.shell.unknowns import COLUMNS, COMPONENTS
 from magshell.units import ANGLE, INVERSE_LENGTH, LENGTH, NUMBER
@@ -171,6 +171,12 @@ class SymmetryPlane(Support):
             )
         return normal / np.linalg.norm(normal)
 
+    def is_like(self, other: Support) -> bool:
+        """Whether the other is a mirror plane with the same normal."""
+        if not isinstance(other, SymmetryPlane):
+            return False
+        return float(np.abs(self.unit_normal @ other.unit_normal)) > 1.0 - 1e-9
+
     def conditions(self) -> Iterator[Condition]:
         """Four per node."""
         normal = self.unit_normal
@@ -288,41 +294,36 @@ AnyBool: TypeAlias = np.typing.NDArray[np.bool_]
 FRAME_OF_FIELD = {"u": 0, "w": 1, "omega": 2}
 
 
-def resolve(mesh: Mesh, supports: Supports, carriers: Mapping[str, AnyBool], stages: int = 1) -> Constraints:
+def resolve(places: Places, supports: Supports, stages: int = 1) -> Constraints:
     """Conditions of all supports as fixed components, with frames of their own where directions are oblique.
 
     Parameters
     ----------
-    mesh : Mesh
+    places : Places
     supports : sequence of Support
-    carriers : mapping of str to (nodes,) ndarray of bool
-        Which nodes carry the fields u, w, phi and omega.
     stages : int
         Of the path.
 
     Raises
     ------
     InputError
-        Unknown group, a field that a node does not carry, supports that contradict each other, a history of a wrong
-        length.
+        Unknown group, a field that a node does not carry, supports that contradict each other, a support on a node of a
+        rigid body, a history of a wrong length.
     """
-    nodes = len(mesh.points)
+    nodes, carriers, owner = places.number, places.carriers, places.owner
     fixed, values = np.zeros((nodes, COMPONENTS), dtype=bool), np.zeros((stages, nodes, COMPONENTS))
     frame_of = np.full((nodes, 3), -1)
     frames: list[FloatArray] = []
     directions: dict[tuple[int, str], list[tuple[FloatArray, FloatArray, str]]] = {}
     for support in supports:
         for condition in support.conditions():
-            members = mesh.nodes_of(condition.group)
+            members = places.named(condition.group)
+            if condition.field != "phi" and not places.is_body(condition.group):
+                members = _off_bodies(places, owner, members, support, supports)
             if condition.field != "u":
                 carries = carriers[condition.field][members]
                 if not carries.any() and not condition.optional:
-                    absent = (
-                        "no node of this shell carries"
-                        if not carriers[condition.field].any()
-                        else (f"node {members[0]} is a mid-side node and does not carry")
-                    )
-                    raise InputError(f"support on '{condition.group}': {absent} '{condition.field}'")
+                    _refuse_absent(places, members, condition)
                 members = members[carries]
             value = condition.value * amplitudes(condition.history, stages, f"support on '{condition.group}'")
             for node in members:
@@ -331,7 +332,7 @@ def resolve(mesh: Mesh, supports: Supports, carriers: Mapping[str, AnyBool], sta
                 )
     for (node, field), wanted in directions.items():
         column = COLUMNS[field].start
-        base, held = _orthonormal(node, field, wanted)
+        base, held = _orthonormal(places.words(node), field, wanted)
         if field == "phi":
             fixed[node, column], values[:, node, column] = True, held[0]
         elif np.all(np.max(np.abs(base), axis=1) > 1.0 - 1e-12):
@@ -347,8 +348,39 @@ def resolve(mesh: Mesh, supports: Supports, carriers: Mapping[str, AnyBool], sta
     return Constraints(fixed, values, frame_of, np.array(frames).reshape(-1, 3, 3))
 
 
+def _off_bodies(places: Places, owner: IntArray, members: IntArray, support: Support, supports: Supports) -> IntArray:
+    """Nodes of a support, but for those on mirror planes of rigid bodies that a like support holds."""
+    inside = owner[members[members < len(owner)]]
+    if not np.any(inside >= 0):
+        return members
+    for place in np.unique(inside[inside >= 0]):
+        body = places.bodies[place - len(owner)]
+        if not any(
+            isinstance(one, SymmetryPlane) and one.is_like(support) for one in supports if one.group == body.name
+        ):
+            node = members[np.argmax(inside == place)]
+            raise InputError(
+                f"support on '{support.group}': node {node} belongs to {body.label}, whose nodes move as one; hold "
+                f'the body, by its name: group = "{body.name}"'
+            )
+    return members[inside < 0]
+
+
+def _refuse_absent(places: Places, members: IntArray, condition: Condition) -> None:
+    """Say why a field is not there."""
+    field, where = condition.field, f"support on '{condition.group}'"
+    if members[0] >= len(places.mesh.points):
+        raise InputError(f"{where}: a rigid body has no '{field}', only u and omega")
+    if not places.carriers[field].any():
+        raise InputError(f"{where}: no node of this shell carries '{field}'")
+    why = (
+        "is a joint, whose directors turn with omega" if places.carriers["omega"][members[0]] else "is a mid-side node"
+    )
+    raise InputError(f"{where}: node {members[0]} {why} and does not carry '{field}'")
+
+
 def _orthonormal(
-    node: int, field: str, wanted: list[tuple[FloatArray, FloatArray, str]]
+    where: str, field: str, wanted: list[tuple[FloatArray, FloatArray, str]]
 ) -> tuple[FloatArray, FloatArray]:
     """Orthonormal directions and their values, by stage, that say the same as all conditions of one node's field."""
     base: list[FloatArray] = []
@@ -366,7 +398,7 @@ def _orthonormal(
         elif np.abs(left).max() > 1e-9 * max(np.abs(one).max() for one in (wanted_value, *values)):
             others = sorted({other for _, _, other in wanted} - {group})
             raise InputError(
-                f"supports: they contradict each other at node {node}: '{group}' wants another {field} than "
+                f"supports: they contradict each other at {where}: '{group}' wants another {field} than "
                 + (f"'{others[0]}'" if others else "an earlier support on the same group")
             )
     return np.array(base), np.array(values)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from magshell.equations.instant import Increment
 from magshell.files import csv_line, first_line, refuse_somebodys, write_atomically
 from magshell.output.critical import write_mode
 from magshell.output.rendering import attempted
@@ -78,7 +79,8 @@ def write_buckling(buckling: Buckling, directory: str | os.PathLike[str]) -> lis
 
 def _draw(buckling: Buckling, mode: BucklingMode, file: pathlib.Path) -> None:
     size = SHOWN * buckling.path.model.shell.mesh.size
-    shape = mode.state.moved(size * mode.mode, np.zeros_like(mode.state.alpha))
+    increment = Increment(size * mode.mode, np.zeros_like(mode.state.alpha))
+    shape = buckling.path.discretisation.moved(mode.state, increment)
     step = Step(
         mode.number, mode.load_factor, shape, 0, 0.0, None, 0.0, mode.stage, mode.flux_density, np.zeros(0), None
     )

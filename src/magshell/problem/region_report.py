@@ -32,7 +32,7 @@ def lines(problem: Problem) -> Iterator[tuple[str, str]]:
     """Label and text for each region and each of its layers."""
     shell = problem.model.shell
     for part in shell.parts:
-        mass = part_mass(part, shell, problem.model.normals)
+        mass = part_mass(part, shell, problem.model.rows)
         yield (
             name_of(part) if len(shell.parts) > 1 else "whole shell",
             f"{counted(len(part.elements), 'element')}, thickness {thickness_of(part)}{offset_of(part)}"

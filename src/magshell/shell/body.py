@@ -17,6 +17,7 @@ from magshell.shell.geometry import Interpolation, SectionGeometry, Sections, in
 from magshell.shell.level import Laws
 from magshell.shell.loops import Body
 from magshell.shell.point import LEVEL, POINT
+from magshell.shell.ties import STRETCHED, TURNED, Ties
 
 
 class Surface(NamedTuple):
@@ -26,8 +27,7 @@ class Surface(NamedTuple):
     ----------
     elements : ndarray, shape (elements, 8)
         Rows of the nodal arrays.
-    stretched : ndarray of bool, shape (elements, 8)
-        Which of its nodes carry a stretch of the director.
+    ties : Ties
     points, normals : ndarray, shape (elements, 8, 3)
         m; unit normals at the nodes.
     element : ElementType
@@ -36,7 +36,7 @@ class Surface(NamedTuple):
     """
 
     elements: IntArray
-    stretched: AnyArray
+    ties: Ties
     points: FloatArray
     normals: FloatArray
     element: ElementType
@@ -91,7 +91,8 @@ def reference_of(surface: Surface, make: Make) -> Reference:
     shape = interpolation(surface.points, surface.normals, element, surface.micro_rotation)
     _, weights = element.integration(surface.points)
     geometry = section_geometry(surface.points, surface.normals, shape, weights, make.sections)
-    s = element.rest_nodes if surface.stretched.any() else 0
+    kind = surface.ties.kind
+    s = element.rest_nodes if np.any((kind == STRETCHED) | (kind == TURNED)) else 0
     layout = layout_of(8, element.rest_nodes, element.stretch_nodes, shape.rotation.shape[-1], element.vectors, s)
     levels = np.zeros(geometry.volume.shape, dtype=LEVEL)
     levels["z"], levels["volume"], levels["G"] = geometry.z, geometry.volume, geometry.G
@@ -108,7 +109,7 @@ def reference_of(surface: Surface, make: Make) -> Reference:
         elements=np.ascontiguousarray(surface.elements),
         normals=np.ascontiguousarray(surface.normals),
         by_level=np.ascontiguousarray(make.by_level) if make.by_level.any() else None,
-        stretched=surface.stretched,
+        ties=surface.ties,
         layout=layout,
         points=points,
         levels=levels,

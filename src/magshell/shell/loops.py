@@ -12,13 +12,6 @@ import numpy as np
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.compiled import Kernel, inline
 from magshell.shell.bubble import Hold, hold_vector
-from magshell.shell.director_stretch import (
-    any_stretched,
-    chain_matrix,
-    chain_row,
-    stretch_directors,
-    stretch_increments,
-)
 from magshell.shell.element import (
     Layout,
     add_radial_force,
@@ -37,6 +30,15 @@ from magshell.shell.point import INTERNAL, MAGNETIC, PADDED, SIZE, Q, workspace
 from magshell.shell.rotation import LAST, NEXT, rotation_matrix
 from magshell.shell.section import Request, predicted_stress, section
 from magshell.shell.state import State
+from magshell.shell.ties import (
+    Tied,
+    Ties,
+    any_tied,
+    chain_matrix,
+    chain_row,
+    stretch_directors,
+    stretch_increments,
+)
 
 
 class Body(NamedTuple):
@@ -50,8 +52,7 @@ class Body(NamedTuple):
         Directors of the undeformed shell at the nodes.
     by_level : ndarray of bool, shape (elements,), or None
         Whether the levels of an element stretch each by itself; None: no element's do.
-    stretched : ndarray of bool, shape (elements, 8)
-        Which of its nodes carry a stretch of the director.
+    ties : Ties
     layout : Layout
     points : ndarray of POINT, shape (elements, points)
     levels : ndarray of LEVEL, shape (elements, points, levels)
@@ -65,7 +66,7 @@ class Body(NamedTuple):
     elements: IntArray
     normals: FloatArray
     by_level: AnyArray | None
-    stretched: AnyArray
+    ties: Ties
     layout: Layout
     points: AnyArray
     levels: AnyArray
@@ -149,7 +150,7 @@ def fill(
     for e in range(first, min(first + len(out.K), len(body.elements))):
         nodes, Kt, r = body.elements[e], out.K[e - first], out.r[0, e]
         gather(nodes, state, state.alpha[e], layout, v)
-        if any_stretched(body.stretched[e], layout):
+        if any_tied(body.ties.kind[e]):
             stretch_directors(nodes, body.normals[e], state, layout, v)
         spin_derivatives(v, layout, T)
         forces[:, :], radial[:] = 0.0, 0.0
@@ -195,20 +196,22 @@ def fill(
                 for i in range(3):
                     at = layout.at_q + i * layout.q + n
                     Kt[at, at] -= 0.25 * radial[n]
-                if transported[nodes[n]]:
-                    _add_spin_transport(r_sum, layout, n, Kt)
             if not condense(Kt, r_sum, nodal, out.gain[e], out.offset[e], factor):
                 return e, 0.0
             for l in range(nodal):
                 out.r[1, e, l] = r_sum[l]
-        if any_stretched(body.stretched[e], layout):
-            normals, stretched = body.normals[e], body.stretched[e]
+        if any_tied(body.ties.kind[e]):
+            tied = Tied(nodes, body.ties.kind[e], body.ties.host[e], body.normals[e])
             if tangent:
-                chain_matrix(nodes, stretched, normals, state, layout, r, Kt)
-                chain_row(nodes, stretched, normals, state, layout, out.r[1, e])
+                chain_matrix(body.ties, tied, state, layout, r, Kt)
+                chain_row(body.ties, tied, state, layout, out.r[1, e])
                 for a in range(3 * modes):
-                    chain_row(nodes, stretched, normals, state, layout, out.gain[e, a])
-            chain_row(nodes, stretched, normals, state, layout, r)
+                    chain_row(body.ties, tied, state, layout, out.gain[e, a])
+            chain_row(body.ties, tied, state, layout, r)
+        if tangent:
+            for n in range(rest):
+                if transported[nodes[n]]:
+                    _add_spin_transport(r, layout, n, Kt)
     return -1, 1.0
 
 
@@ -246,7 +249,7 @@ def predict_stresses(
         nodes = body.elements[e]
         gather(nodes, state, state.alpha[e], layout, v)
         _gather_increment(nodes, increment, layout, spins)
-        if any_stretched(body.stretched[e], layout):
+        if any_tied(body.ties.kind[e]):
             stretch_directors(nodes, body.normals[e], state, layout, v)
             stretch_increments(nodes, body.normals[e], state, increment, layout, spins)
         for l in range(at):
@@ -280,7 +283,7 @@ def level_stretches(body: Body, state: State, flux_density: FloatArray, zeta: Fl
     w, across = records[0], np.zeros((4, body.levels.shape[2]))
     for e in range(len(body.elements)):
         gather(body.elements[e], state, state.alpha[e], layout, v)
-        if any_stretched(body.stretched[e], layout):
+        if any_tied(body.ties.kind[e]):
             stretch_directors(body.elements[e], body.normals[e], state, layout, v)
         for p in range(body.points.shape[1]):
             point = body.points[e, p]

@@ -228,13 +228,14 @@ def _angles_of_edges(discretisation: Discretisation, state: State) -> FloatArray
     """Angle (elements, 4) that the shell turns along each edge, degrees."""
     elements = discretisation.mesh.elements
     nodes = len(discretisation.mesh.points)
-    position, director = discretisation.mesh.points + state.u[:nodes], discretisation.normals + state.w[:nodes]
+    position, rows = discretisation.mesh.points + state.u[:nodes], discretisation.rows
+    director = (rows.normals + state.w)[rows.elements[:, :4]]
     first, second, middle = elements[:, :4], np.roll(elements[:, :4], -1, axis=1), elements[:, 4:]
     chord, rise = (
         position[second] - position[first],
         4.0 * position[middle] - 2.0 * (position[first] + position[second]),
     )
-    return np.maximum(_angles(chord + rise, chord - rise), _angles(director[first], director[second]))
+    return np.maximum(_angles(chord + rise, chord - rise), _angles(director, np.roll(director, -1, axis=1)))
 
 
 def _angles(one: FloatArray, other: FloatArray) -> FloatArray:

@@ -25,7 +25,7 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from magshell.equations.instant import Instant, Prediction, combined, moved
+from magshell.equations.instant import Instant, Prediction, combined
 from magshell.equations.term import InvertedElement
 from magshell.evaluation.points import evaluate
 from magshell.linalg import Factorisation
@@ -92,7 +92,8 @@ class LinearPath:
             An element is turned inside out there.
         """
         stresses = combined([1.0, s], [self._stresses, self._stress_rate])
-        instant = Instant(moved(self.state, s * self._increment), self.system.course.at(s * self.unit), stresses)
+        state = self.system.discretisation.moved(self.state, s * self._increment)
+        instant = Instant(state, self.system.course.at(s * self.unit), stresses)
         try:
             matrix = self.system.discretisation.assemble(instant).matrix
         except InvertedElement as inverted:
@@ -109,9 +110,10 @@ class LinearPath:
 
     def _motion(self) -> tuple[float, float]:
         """Largest strain and rotation of t F' F0⁻¹ at s = 1. (F is quadratic in s, so that the difference is exact.)"""
-        reference, state = self.system.discretisation.reference, self.state
-        ahead, back = (evaluate(reference, moved(state, side * self._increment)).F for side in (1.0, -1.0))
-        gradient = 0.5 * (ahead - back) @ np.linalg.inv(evaluate(reference, state).F)
+        discretisation, state = self.system.discretisation, self.state
+        moved = (discretisation.moved(state, side * self._increment) for side in (1.0, -1.0))
+        ahead, back = (evaluate(discretisation.reference, one).F for one in moved)
+        gradient = 0.5 * (ahead - back) @ np.linalg.inv(evaluate(discretisation.reference, state).F)
         turned = np.swapaxes(gradient, -1, -2)
         strain, spin = 0.5 * (gradient + turned), 0.5 * (gradient - turned)
         return float(np.linalg.norm(strain, 2, (-2, -1)).max()), float(np.linalg.norm(spin, 2, (-2, -1)).max())

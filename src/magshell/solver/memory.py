@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse as sp
 
-from magshell.equations.numbering import graph_of
+from magshell.equations.numbering import place_graph
 from magshell.linalg import nested_dissection
 from magshell.linalg.multifrontal.fronts import fronts_of
 from magshell.model.model import Model
@@ -43,12 +43,12 @@ class Need(NamedTuple):
 
 def need_of(model: Model, linear_solver: str = "multifrontal") -> Need:
     """What a solve of a model will take."""
-    mesh, nodes = model.shell.mesh, len(model.shell.mesh.points)
-    elements = len(mesh.elements)
-    graph = graph_of([mesh.elements], nodes)
-    order = nested_dissection(graph)
-    free = (model.rows.carried & ~model.constraints.fixed).sum(axis=1)
-    unknowns = np.bincount(model.rows.of, free, minlength=nodes).astype(np.int64)
+    rows, elements = model.rows, len(model.shell.mesh.elements)
+    graph = place_graph(rows, [rows.elements])
+    nodes = sp.csr_array(graph[: rows.nodes, : rows.nodes])
+    order = np.append(nested_dissection(nodes), np.arange(rows.nodes, rows.places))
+    free = (rows.carried & ~model.constraints.fixed).sum(axis=1)
+    unknowns = np.bincount(rows.of, free, minlength=rows.places).astype(np.int64)
     order = order[unknowns[order] > 0]
     ordered = sp.csc_array(graph[order][:, order])
     ordered.sort_indices()

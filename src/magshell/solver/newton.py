@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.equations.discretisation import Assembly, Discretisation
-from magshell.equations.instant import Increment, Instant, Prediction, moved
+from magshell.equations.instant import Increment, Instant, Prediction
 from magshell.equations.term import InvertedElement
 from magshell.linalg import Factorisation, LinearSolver, SingularMatrix
 from magshell.model.course import Course
@@ -153,7 +153,7 @@ def newton(
         for halving in range(HALVINGS + 1):
             size = 0.5**halving
             trial = Trial(
-                moved(start.state, size * increment),
+                discretisation.moved(start.state, size * increment),
                 start.load_factor + size * d_load,
                 system.predicted(start.state, start.load_factor, size * increment),
             )

@@ -15,7 +15,7 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.equations.discretisation import Discretisation
-from magshell.equations.instant import Increment, Instant, Prediction, combined, difference, moved
+from magshell.equations.instant import Increment, Instant, Prediction, combined, difference
 from magshell.linalg import Factorisation
 from magshell.model.course import Course
 from magshell.shell.state import State
@@ -107,7 +107,7 @@ def trial_at(
     held = course.amounts(load_factor).held - course.amounts(last.load_factor).held
     increment = discretisation.with_imposed(increment, held)
     prediction = _predicted_ahead(discretisation, course, track, on_slope, shares)
-    return Trial(moved(last.state, increment), load_factor, prediction)
+    return Trial(discretisation.moved(last.state, increment), load_factor, prediction)
 
 
 def _predicted_ahead(

@@ -22,6 +22,7 @@ from magshell.model.loads.dead import DeadForces, nodal
 from magshell.model.loads.distribution import shares
 from magshell.model.loads.load import Applied, Pairs, Size
 from magshell.model.loads.total import FOLLOWER, GROUP, TotalLoad
+from magshell.model.rows import Rows
 from magshell.model.shell import Shell
 from magshell.shell import rotation
 from magshell.shell.state import State
@@ -61,7 +62,7 @@ class Force(TotalLoad):
     follower: bool = False
     history: Sequence[float] | None = None
 
-    def applied(self, shell: Shell, normals: FloatArray) -> Applied:
+    def applied(self, shell: Shell, rows: Rows) -> Applied:
         """The load on a mesh."""
         with self.located():
             if self.follower and not shell.micro_rotation:

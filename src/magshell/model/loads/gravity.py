@@ -22,6 +22,7 @@ from magshell.model.loads.checks import vector
 from magshell.model.loads.dead import DeadForces
 from magshell.model.loads.load import Applied, Arrows, Load, Size, amid, resultant
 from magshell.model.loads.mass import nodal_masses
+from magshell.model.rows import Rows
 from magshell.model.shell import Shell
 from magshell.units import ACCELERATION, FORCE, Dimension
 from magshell.wording import quantity
@@ -55,12 +56,12 @@ class Gravity(Load):
     group: str | None = None
     history: Sequence[float] | None = None
 
-    def applied(self, shell: Shell, normals: FloatArray) -> Applied:
+    def applied(self, shell: Shell, rows: Rows) -> Applied:
         """The load on a mesh."""
         with self.located():
             acceleration = vector("acceleration", self.acceleration)
             members = self.members(shell)
-        masses = nodal_masses(shell, normals, members)
+        masses = nodal_masses(shell, rows, members)
         return DeadForces(*(mass[:, None] * acceleration for mass in masses))
 
     def words(self, shell: Shell, forces: FloatArray) -> str:

@@ -17,6 +17,7 @@ from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.keys import Key
 from magshell.mesh.geometry import centres, unit
+from magshell.model.rows import Rows
 from magshell.model.shell import Shell
 from magshell.multipliers import numbers
 from magshell.shell.state import State
@@ -139,8 +140,8 @@ class Load(ABC):
             object.__setattr__(self, "history", tuple(numbers(self.history, self.label).tolist()))
 
     @abstractmethod
-    def applied(self, shell: Shell, normals: FloatArray) -> Applied:
-        """The load on the mesh of a shell, with its unit normals (nodes, 3) at the nodes.
+    def applied(self, shell: Shell, rows: Rows) -> Applied:
+        """The load on the nodal arrays of a shell.
 
         Raises
         ------

@@ -22,19 +22,21 @@ from magshell.errors import InputError
 from magshell.model.loads.distribution import POINTS
 from magshell.model.loads.functions import loaded
 from magshell.model.parts import REST, Part
+from magshell.model.rows import Rows
 from magshell.model.shell import Shell
 from magshell.shell.geometry import director_functions
 from magshell.shell.shape_functions import gauss_legendre
+from magshell.shell.unknowns import COLUMNS
 
 
 class Masses(NamedTuple):
-    """Mass and first moment of mass of each node.
+    """Mass and first moment of mass of each row of the nodal arrays.
 
     Attributes
     ----------
-    on_u : ndarray, shape (nodes,)
+    on_u : ndarray, shape (rows,)
         Integrals of the functions of u over the mass, kg.
-    on_w : ndarray, shape (nodes,)
+    on_w : ndarray, shape (rows,)
         Integrals of the functions of the director times the height over the mesh, kg m; zero unless the mass lies more
         on one side of the mesh.
     """
@@ -43,8 +45,8 @@ class Masses(NamedTuple):
     on_w: FloatArray
 
 
-def nodal_masses(shell: Shell, normals: FloatArray, members: IntArray) -> Masses:
-    """Masses of some elements, with unit normals (nodes, 3) at the nodes.
+def nodal_masses(shell: Shell, rows: Rows, members: IntArray) -> Masses:
+    """Masses of some elements, at the rows of the nodal arrays.
 
     Raises
     ------
@@ -53,13 +55,12 @@ def nodal_masses(shell: Shell, normals: FloatArray, members: IntArray) -> Masses
     """
     chosen = np.zeros(len(shell.mesh.elements), dtype=bool)
     chosen[members] = True
-    count = len(shell.mesh.points)
-    masses = Masses(np.zeros(count), np.zeros(count))
+    masses = Masses(np.zeros(len(rows.of)), np.zeros(len(rows.of)))
     for part in shell.parts:
-        rows = np.flatnonzero(chosen[part.elements])
-        if rows.size:
+        some = np.flatnonzero(chosen[part.elements])
+        if some.size:
             _check_density(part, "gravity")
-            _add(masses, shell, part, rows, normals)
+            _add(masses, shell, part, some, rows)
     return masses
 
 
@@ -78,8 +79,8 @@ class Mass(NamedTuple):
     centroid: FloatArray
 
 
-def whole_mass(shell: Shell, normals: FloatArray) -> Mass:
-    """Mass and centroid of a shell with unit normals (nodes, 3).
+def whole_mass(shell: Shell, rows: Rows) -> Mass:
+    """Mass and centroid of a shell.
 
     Raises
     ------
@@ -89,17 +90,17 @@ def whole_mass(shell: Shell, normals: FloatArray) -> Mass:
     total, moment = 0.0, np.zeros(3)
     for part in shell.parts:
         _check_density(part, "the mass")
-        for layer in _layers_of(shell, part, np.arange(len(part.elements)), normals):
+        for layer in _layers_of(shell, part, np.arange(len(part.elements)), rows):
             total += float(layer.masses.sum())
             moment += np.einsum("ep,epx->x", layer.masses, layer.x) + np.einsum("ep,epx->x", layer.levers, layer.D)
     return Mass(total, moment / total)
 
 
-def part_mass(part: Part, shell: Shell, normals: FloatArray) -> float | None:
+def part_mass(part: Part, shell: Shell, rows: Rows) -> float | None:
     """Mass of a part, kg; None if a density is missing."""
     if any(layer.density is None for layer in part.layers):
         return None
-    return float(nodal_masses(shell, normals, part.elements).on_u.sum())
+    return float(nodal_masses(shell, rows, part.elements).on_u.sum())
 
 
 def _check_density(part: Part, user: str) -> None:
@@ -120,14 +121,14 @@ class _Layer(NamedTuple):
     D: FloatArray
 
 
-def _layers_of(shell: Shell, part: Part, rows: IntArray, normals: FloatArray) -> Iterator[_Layer]:
-    """The layers of some elements of a part, by its rows; moments with the term in a alone, levers with all."""
-    element, elements = shell.element, shell.mesh.elements[part.elements[rows]]
+def _layers_of(shell: Shell, part: Part, some: IntArray, rows: Rows) -> Iterator[_Layer]:
+    """The layers of some elements, by their places in a part; moments with the term in a alone, levers with all."""
+    element, elements = shell.element, shell.mesh.elements[part.elements[some]]
     nodes = shell.mesh.points[elements]
     points, weights = gauss_legendre(POINTS)
     functions = element.functions(8, points, nodes)
     rest = element.functions(element.rest_nodes, points, nodes)
-    ends = normals[elements[:, : element.rest_nodes]]
+    ends = rows.normals[rows.elements[part.elements[some], : element.rest_nodes]]
     director = director_functions(ends, rest.values, rest.derivatives)
     x = np.einsum("epn,enx->epx", functions.values, nodes)
     A = np.einsum("epan,enx->epax", functions.derivatives, nodes)
@@ -142,13 +143,13 @@ def _layers_of(shell: Shell, part: Part, rows: IntArray, normals: FloatArray) ->
     )
     heights = np.stack(
         [
-            np.einsum("epn,en->ep", functions.values, part.at_nodes[rows, :, number])
+            np.einsum("epn,en->ep", functions.values, part.at_nodes[some, :, number])
             if callable(layer.thickness)
             else np.full(a.shape, layer.thickness)
             for number, layer in enumerate(part.layers)
         ]
     )
-    offset = np.einsum("epn,en->ep", functions.values, part.offset_at_nodes[rows])
+    offset = np.einsum("epn,en->ep", functions.values, part.offset_at_nodes[some])
     below = -0.5 * heights.sum(axis=0) - offset
     for layer, height in zip(part.layers, heights, strict=True):
         assert layer.density is not None
@@ -164,15 +165,16 @@ def _layers_of(shell: Shell, part: Part, rows: IntArray, normals: FloatArray) ->
         below = above
 
 
-def _add(masses: Masses, shell: Shell, part: Part, rows: IntArray, normals: FloatArray) -> None:
-    """The masses of some elements of a part, by its rows."""
-    element, elements = shell.element, shell.mesh.elements[part.elements[rows]]
+def _add(masses: Masses, shell: Shell, part: Part, some: IntArray, rows: Rows) -> None:
+    """The masses of some elements of a part, by their places in it."""
+    element, elements = shell.element, shell.mesh.elements[part.elements[some]]
     nodes, (points, _) = shell.mesh.points[elements], gauss_legendre(POINTS)
     carried = loaded(element, points, nodes).values
     rest = element.functions(element.rest_nodes, points, nodes)
-    ends = normals[elements[:, : element.rest_nodes]]
+    ends = rows.normals[rows.elements[part.elements[some], : element.rest_nodes]]
     director = director_functions(ends, rest.values, rest.derivatives)[:, :, 0]
-    for layer in _layers_of(shell, part, rows, normals):
+    directors = rows.source[rows.elements[part.elements[some], : element.rest_nodes], COLUMNS["w"].start]
+    for layer in _layers_of(shell, part, some, rows):
         np.add.at(masses.on_u, elements, np.einsum("ep,epn->en", layer.masses, carried))
         on_w = np.einsum("ep,epn->en", layer.moments, director)
-        np.add.at(masses.on_w, elements[:, : element.rest_nodes], on_w)
+        np.add.at(masses.on_w, directors, on_w)

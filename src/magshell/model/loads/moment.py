@@ -32,6 +32,7 @@ from magshell.model.loads.dead import nodal
 from magshell.model.loads.distribution import shares
 from magshell.model.loads.load import Applied, Pairs, Size
 from magshell.model.loads.total import FOLLOWER, GROUP, TotalLoad
+from magshell.model.rows import Rows
 from magshell.model.shell import Shell
 from magshell.shell import rotation
 from magshell.shell.state import State
@@ -70,7 +71,7 @@ class Moment(TotalLoad):
     follower: bool = False
     history: Sequence[float] | None = None
 
-    def applied(self, shell: Shell, normals: FloatArray) -> Applied:
+    def applied(self, shell: Shell, rows: Rows) -> Applied:
         """The load on a mesh."""
         with self.located():
             if self.follower and not shell.micro_rotation:
@@ -81,7 +82,7 @@ class Moment(TotalLoad):
             parts = shares(shell, self.group, "omega" if shell.micro_rotation else "w")
             moments = parts[:, None] * vector("total", self.total)
         if not shell.micro_rotation:
-            return _DirectorMoments(moments, normals)
+            return _DirectorMoments(moments, rows.normals[: len(moments)])
         return _TurningCouples(moments) if self.follower else _DeadCouples(moments)
 
     def size(self, forces: FloatArray) -> Size:

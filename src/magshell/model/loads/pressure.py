@@ -33,6 +33,7 @@ from magshell.model.loads.dead import nodal
 from magshell.model.loads.distribution import nodal_areas
 from magshell.model.loads.functions import loaded
 from magshell.model.loads.load import Applied, Arrows, Load, Pairs, Size
+from magshell.model.rows import Rows
 from magshell.model.shell import Shell
 from magshell.shell import rotation
 from magshell.shell.shape_functions import gauss_legendre
@@ -70,7 +71,7 @@ class Pressure(Load):
     pressure: float
     history: Sequence[float] | None = None
 
-    def applied(self, shell: Shell, normals: FloatArray) -> Applied:
+    def applied(self, shell: Shell, rows: Rows) -> Applied:
         """The load on a mesh; conservative where the group is a closed surface (see the module on the others)."""
         with self.located():
             members = self.members(shell)

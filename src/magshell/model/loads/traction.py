@@ -15,6 +15,7 @@ from magshell.model.loads.checks import vector
 from magshell.model.loads.dead import DeadForces
 from magshell.model.loads.distribution import nodal_areas
 from magshell.model.loads.load import Applied, Load, Size, resultant
+from magshell.model.rows import Rows
 from magshell.model.shell import Shell
 from magshell.units import STRESS, Dimension
 
@@ -47,7 +48,7 @@ class Traction(Load):
     traction: ArrayLike
     history: Sequence[float] | None = None
 
-    def applied(self, shell: Shell, normals: FloatArray) -> Applied:
+    def applied(self, shell: Shell, rows: Rows) -> Applied:
         """The load on a mesh."""
         with self.located():
             areas = nodal_areas(shell, self.members(shell))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pathlib
 from collections.abc import Sequence
+from typing import Any
 
 from magshell.magnetics.remanence import Remanence
 from magshell.mesh import Mesh
@@ -26,7 +27,7 @@ def build_shell(file: ProblemFile, mesh: Mesh, folder: pathlib.Path) -> Shell:
     with at("shell.thickness"):
         thickness = builder.thickness(table.thickness)
     regions = [builder.region(number, one) for number, one in enumerate(file.regions)]
-    given = {"remanence": build_remanence(file.remanence, mesh, folder)} if file.remanence else {}
+    given: dict[str, Any] = {"remanence": build_remanence(file.remanence, mesh, folder)} if file.remanence else {}
     return Shell(
         mesh=mesh,
         thickness=thickness,

@@ -1,0 +1,97 @@
+"""Rigid bodies: groups of a shell that move as one, with six unknowns at a reference point."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from magshell.arrays import FloatArray, IntArray
+from magshell.errors import InputError
+from magshell.mesh import Mesh
+
+
+@dataclass(frozen=True, eq=False)
+class RigidBody:
+    """A group of a shell that moves as one rigid body: displacement, director and micro-rotation of its nodes follow.
+
+    Supports and loads hold, move, turn and load it by its name.
+
+    Parameters
+    ----------
+    group : str
+        Group of nodes, edges or elements. No node may belong to two bodies.
+    name : str, optional
+        By default the group.
+    point : array_like, shape (3,), optional
+        Reference point, m: the displacement of the body is that of this point, and forces act on it. By default the
+        centroid of the group's nodes.
+    moment : array_like, shape (3,), optional
+        Magnetic dipole moment in the undeformed configuration, A m²; it turns with the body. By default none.
+    mass : float, optional
+        At the reference point, kg. By default none.
+
+    Raises
+    ------
+    InputError
+        A value is no number, not finite, or negative.
+    """
+
+    group: str
+    name: str = ""
+    point: ArrayLike | None = None
+    moment: ArrayLike = (0.0, 0.0, 0.0)
+    mass: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "name", self.name or self.group)
+        if self.point is not None:
+            object.__setattr__(self, "point", self._vector("point", self.point))
+        object.__setattr__(self, "moment", self._vector("moment", self.moment))
+        if not 0.0 <= float(self.mass) < np.inf:
+            raise InputError(f"{self.label}: mass is {self.mass!r}; it must be 0 or positive")
+
+    @property
+    def label(self) -> str:
+        """Its name in messages."""
+        return f"rigid body '{self.name}'"
+
+    def _vector(self, name: str, value: ArrayLike) -> FloatArray:
+        try:
+            vector = np.array(value, dtype=float)
+        except (TypeError, ValueError):
+            vector = np.empty(0)
+        if vector.shape != (3,) or not np.all(np.isfinite(vector)):
+            raise InputError(f"{self.label}: {name} is {value!r}; it needs 3 finite numbers")
+        return vector
+
+    def reference_point(self, mesh: Mesh) -> FloatArray:
+        """Its reference point (3,), m."""
+        if self.point is None:
+            return np.asarray(mesh.points[mesh.nodes_of(self.group)].mean(axis=0))
+        return np.asarray(self.point)
+
+
+def members_of(mesh: Mesh, bodies: tuple[RigidBody, ...]) -> IntArray:
+    """Number of the body that each node of a mesh belongs to, -1 for none.
+
+    Raises
+    ------
+    InputError
+        Two bodies have one name, or a node in common; a group is unknown.
+    """
+    owner = np.full(len(mesh.points), -1)
+    for number, body in enumerate(bodies):
+        if any(body.name == other.name for other in bodies[:number]):
+            raise InputError(f"{body.label}: there are two of this name; give them names of their own")
+        try:
+            nodes = mesh.nodes_of(body.group)
+        except InputError as error:
+            raise InputError(f"{body.label}: {error}") from None
+        taken = nodes[owner[nodes] >= 0]
+        if taken.size:
+            other = bodies[owner[taken[0]]]
+            raise InputError(f"{body.label}: node {taken[0]} also belongs to {other.label}; a node moves with one body")
+        owner[nodes] = number
+    return owner

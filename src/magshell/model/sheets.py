@@ -1,0 +1,130 @@
+"""Sheets that meet at a node: at kinks, ribs and hinges a shell is several surfaces with a director each.
+
+Elements about a node are one *piece* unless hinges part them: across a hinge nothing but u is shared. Within a piece,
+elements whose normals at the node differ by less than `KINK` are one *sheet*, with one director, the mean of their
+normals. A piece of several sheets is a joint: one rotation carries the directors of all its sheets.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from magshell.arrays import AnyArray, IntArray
+from magshell.errors import InputError, suggest
+from magshell.mesh import Mesh
+from magshell.mesh.edges import SIDES, edge_keys, find_edges
+from magshell.model.hinge import Hinge
+from magshell.shell.normals import corner_normals
+from magshell.shell.triangle import REPEATED
+
+KINK = np.cos(np.radians(30.0))
+"""Elements whose normals at a node are further apart than this are different sheets there."""
+
+
+class Sheets(NamedTuple):
+    """What meets at the nodes where there is more than one sheet.
+
+    Attributes
+    ----------
+    nodes : ndarray, shape (n,)
+        Those nodes, rising.
+    piece, sheet : ndarray, shape (elements, 8)
+        Piece at each node of each element, and sheet within the piece; 0 where there is one only.
+    sprung : ndarray of bool, shape (nodes of the mesh,)
+        Nodes of hinges with a spring.
+    """
+
+    nodes: IntArray
+    piece: IntArray
+    sheet: IntArray
+    sprung: AnyArray
+
+
+def sheets_of(mesh: Mesh, hinges: Sequence[Hinge]) -> Sheets:
+    """The sheets of a mesh.
+
+    Raises
+    ------
+    InputError
+        A hinge is on no group of edges, or on an edge that fewer than two elements share.
+    """
+    elements, count = mesh.elements, len(mesh.points)
+    normals = corner_normals(mesh.points, elements)
+    there = np.any(normals, axis=2)
+    first = np.empty((count, 3))
+    first[elements[there][::-1]] = normals[there][::-1]
+    kinked = np.sum(normals * first[elements], axis=2) < KINK
+    special = np.zeros(count, dtype=bool)
+    special[elements[kinked & there]] = True
+    edges = find_edges(elements)
+    hinged, sprung = np.zeros(len(edges.first_side), dtype=bool), np.zeros(count, dtype=bool)
+    for hinge in hinges:
+        numbers = _edges_of(mesh, hinge, edges.sides[edges.first_side], edges.sharing)
+        hinged[numbers] = True
+        nodes = edges.sides[edges.first_side[numbers]].ravel()
+        special[nodes] = True
+        sprung[nodes] |= hinge.stiffness > 0.0
+    piece, sheet = np.zeros(elements.shape, dtype=np.int64), np.zeros(elements.shape, dtype=np.int64)
+    places = np.flatnonzero(there.ravel() & special[elements.ravel()])
+    places = places[np.argsort(elements.ravel()[places], kind="stable")]
+    at_hinge = np.zeros(count, dtype=bool)
+    at_hinge[edges.sides[edges.first_side[hinged]].ravel()] = True
+    for group in np.split(places, np.flatnonzero(np.diff(elements.ravel()[places])) + 1) if places.size else ():
+        owner, slot = np.divmod(group, 8)
+        if at_hinge[elements[owner[0], slot[0]]]:
+            piece[owner, slot] = _pieces(owner, slot, edges.edge_of_side, hinged)
+        cosines = np.einsum("ix,jx->ij", normals[owner, slot], normals[owner, slot])
+        for number in np.unique(piece[owner, slot]):
+            own = piece[owner, slot] == number
+            sheet[owner[own], slot[own]] = _components(cosines[np.ix_(own, own)] >= KINK)
+    triangles = np.flatnonzero(mesh.triangles)
+    for label in (piece, sheet):
+        label[np.ix_(triangles, REPEATED)] = label[triangles, 2][:, None]
+    return Sheets(np.flatnonzero(special), piece, sheet, sprung)
+
+
+def _edges_of(mesh: Mesh, hinge: Hinge, edges: IntArray, sharing: IntArray) -> IntArray:
+    """Numbers of the edges of a hinge."""
+    where = f"hinge on '{hinge.group}'"
+    if hinge.group not in mesh.edge_groups:
+        what = "it is no group of edges" if hinge.group in mesh.groups else "there is no such group of edges"
+        raise InputError(f"{where}: {what}. {suggest(hinge.group, mesh.edge_groups)}")
+    count = len(mesh.points)
+    keys = edge_keys(edges, count)
+    numbers = np.searchsorted(keys, edge_keys(mesh.edge_groups[hinge.group], count))
+    free = np.flatnonzero(sharing[numbers] < 2)
+    if free.size:
+        one, other = mesh.edge_groups[hinge.group][free[0], :2]
+        raise InputError(
+            f"{where}: the edge between nodes {one} and {other} is a free edge of the shell; a hinge joins two or "
+            "more elements"
+        )
+    return np.asarray(numbers)
+
+
+def _pieces(owner: IntArray, slot: IntArray, edge_of_side: IntArray, hinged: AnyArray) -> IntArray:
+    """Piece of each element about a node: those are one that hang together by edges without a hinge."""
+    meets = (SIDES[None] == slot[:, None, None]).any(axis=2)
+    edges = np.where(meets, edge_of_side[4 * owner[:, None] + np.arange(4)], -1)
+    edges[(edges >= 0) & hinged[edges]] = -1
+    common = (edges[:, None, :, None] == edges[None, :, None, :]) & (edges >= 0)[:, None, :, None]
+    same = common.any(axis=(2, 3)) | (owner[:, None] == owner)
+    return _components(same)
+
+
+def _components(linked: AnyArray) -> IntArray:
+    """Connected component of each of a few things, numbered in the order of their first members."""
+    label = np.full(len(linked), -1)
+    for start in range(len(linked)):
+        if label[start] < 0:
+            reached = linked[start]
+            while True:
+                further = linked[reached].any(axis=0) | reached
+                if np.array_equal(further, reached):
+                    break
+                reached = further
+            label[reached] = label.max() + 1
+    return label
