@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import pathlib
 from typing import TYPE_CHECKING
 
@@ -57,6 +58,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--gap", metavar="LENGTH", help="ends of a drawing's lines closer than this are joined")
     parser.add_argument(
+        "--weld",
+        metavar="LENGTH",
+        help="nodes of a mesh no further apart become one, as at an open seam",
+    )
+    parser.add_argument(
+        "--cut", metavar="GROUP", action="append", help="edges along which the surface is cut; once for each group"
+    )
+    parser.add_argument(
         "--trust-script", action="store_true", help="let a .geo run programs and write files, as gmsh does"
     )
 
@@ -84,7 +93,8 @@ def run(given: argparse.Namespace) -> int:
         say(out, f"  {label:<{width}}  {text}")
     if target is not None:
         write(mesh, target, mesh.origin.unit)
-        say(out, f'{target} written; in a problem file: [mesh] file = "{target.name}"')
+        cuts = f", cuts = {json.dumps(mesh.cuts, ensure_ascii=False)}" if mesh.cuts else ""
+        say(out, f'{target} written; in a problem file: [mesh] file = "{target.name}"{cuts}')
     return SOLVED
 
 
@@ -102,7 +112,7 @@ def _wishes(given: argparse.Namespace) -> Wishes:
     from magshell.units import LENGTH, parse
 
     lengths = {}
-    for option in ("size", "gap"):
+    for option in ("size", "gap", "weld"):
         said = getattr(given, option)
         try:
             lengths[option] = None if said is None else parse(said, LENGTH)
@@ -116,6 +126,8 @@ def _wishes(given: argparse.Namespace) -> Wishes:
         mid_surface=given.mid_surface,
         holes=tuple(given.holes or ()),
         gap=lengths["gap"],
+        weld=lengths["weld"],
+        cuts=tuple(given.cut or ()),
         trust_script=given.trust_script,
     )
 

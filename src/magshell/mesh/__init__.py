@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from magshell.mesh.cuts import cut
 from magshell.mesh.drawings.polygons import polygon
 from magshell.mesh.drawings.reading import from_drawing
 from magshell.mesh.files import from_cad, read, write
@@ -15,6 +16,7 @@ __all__ = [
     "Mesh",
     "annulus",
     "blocks",
+    "cut",
     "cylinder",
     "from_cad",
     "from_drawing",

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, TypeVar
 
 import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray, IntArray
-from magshell.errors import MeshError
+from magshell.errors import InputError, MeshError, suggest
 from magshell.mesh.edges import COLLAPSED, Edges, edge_keys, is_triangle
-from magshell.mesh.wording import COUNTING, further, listing, place
+from magshell.mesh.wording import further, listing, place
 
 Array = TypeVar("Array", bound=AnyArray)
 FARTHEST = 1e12
@@ -100,16 +100,8 @@ def _check_duplicates(elements: IntArray) -> None:
 
 
 def check_connectivity(points: FloatArray, elements: IntArray, edges: Edges) -> None:
-    """At most two elements on an edge, with one middle, walked in opposite senses; a corner is no middle."""
+    """Elements on an edge share its middle, which is that of no other edge; a corner is no middle."""
     _check_roles(points, elements)
-    crowded = np.flatnonzero(edges.sharing > 2)
-    if crowded.size:
-        owners = np.flatnonzero(edges.edge_of_side == crowded[0]) // 4
-        one, other = edges.sides[edges.first_side[crowded[0]], :2]
-        raise MeshError(
-            f"Elements {listing(owners)} share the edge between nodes {one} and {other} at "
-            f"{place(points[one])}: a shell surface has at most two elements on an edge." + further(crowded.size)
-        )
     partner = edges.first_side[edges.edge_of_side]
     odd = np.flatnonzero(edges.sides[:, 2] != edges.sides[partner, 2])
     if odd.size:
@@ -127,16 +119,6 @@ def check_connectivity(points: FloatArray, elements: IntArray, edges: Edges) -> 
         raise MeshError(
             f"Elements {one // 4} and {other // 4} have node {edges.sides[one, 2]} in the middle of "
             f"two different edges, at {place(points[edges.sides[one, 2]])}." + further(twice.size)
-        )
-    alike = (edges.sides[:, 0] == edges.sides[partner, 0]) & (edges.sides[:, 0] != edges.sides[:, 1])
-    same = np.flatnonzero(alike & (partner != np.arange(len(partner))))
-    if same.size:
-        one, other = partner[same[0]] // 4, same[0] // 4
-        ends = edges.sides[same[0]]
-        raise MeshError(
-            f"Elements {one} and {other} disagree about which side is up: both walk their common edge from "
-            f"node {ends[0]} to node {ends[1]}, at {place(points[ends[0]])}. Corners must run "
-            f"counter-clockwise seen from one and the same side of the whole surface {COUNTING}." + further(same.size)
         )
 
 
@@ -177,6 +159,15 @@ def check_groups(
         {name: _edge_rows(values, f"Edge group '{name}'", len(points), edges) for name, values in edge_groups.items()},
         {name: _numbers(values, f"Node group '{name}'", "node", len(points)) for name, values in node_groups.items()},
     )
+
+
+def check_cuts(cuts: Sequence[str] | str, edge_groups: Mapping[str, IntArray]) -> tuple[str, ...]:
+    """The names of cuts, or an InputError if one is no edge group."""
+    names = (cuts,) if isinstance(cuts, str) else tuple(cuts)
+    for name in names:
+        if name not in edge_groups:
+            raise InputError(f"cuts: there is no edge group '{name}'. {suggest(str(name), edge_groups)}")
+    return names
 
 
 def check_name(name: str, kind: str, kinds: Mapping[str, str]) -> None:

@@ -40,6 +40,19 @@ class Edges(NamedTuple):
         """Side numbers of the edges that only one element has."""
         return np.sort(self.first_side[self.sharing == 1])
 
+    @property
+    def pairs(self) -> tuple[IntArray, IntArray]:
+        """Side numbers (k,) and (k,) of every two sides that lie on one edge."""
+        order = np.argsort(self.edge_of_side, kind="stable")
+        order = order[self.sharing[self.edge_of_side[order]] > 1]
+        edge = self.edge_of_side[order]
+        found = [np.zeros((2, 0), dtype=np.int64)]
+        for step in range(1, int(self.sharing.max())):
+            together = np.flatnonzero(edge[step:] == edge[:-step])
+            found.append(np.stack([order[together], order[together + step]]))
+        one, other = np.concatenate(found, axis=1)
+        return one, other
+
 
 def is_triangle(elements: IntArray) -> AnyArray:
     """Which rows (n, 8) are triangles: [a, b, c, c, ab, bc, c, ca]."""

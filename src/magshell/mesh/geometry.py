@@ -29,13 +29,22 @@ def scaled_jacobians(points: FloatArray, elements: IntArray) -> FloatArray:
 
 def corner_normals(x: FloatArray, elements: IntArray) -> FloatArray:
     """Normal A1 x A2 / (|A1| |A2|) of the edge tangents at the corners, (elements, 4, 3), with x (elements, 8, 3)."""
+    leaving, arriving = corner_tangents(x, elements)
+    result: FloatArray = np.cross(unit(leaving), unit(arriving))
+    return result
+
+
+def corner_tangents(x: FloatArray, elements: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Tangents of the edges towards the next corner and towards the one before, each (elements, 4, 3), m.
+
+    Corners 3 and 4 of a triangle are one and have the same two tangents.
+    """
     triangles = is_triangle(elements)
     leaving = 4 * x[:, 4:] - 3 * x[:, :4] - x[:, [1, 2, 3, 0]]
     arriving = 4 * x[:, [7, 4, 5, 6]] - 3 * x[:, :4] - x[:, [3, 0, 1, 2]]
     leaving[triangles, 2] = leaving[triangles, 3]
     arriving[triangles, 3] = arriving[triangles, 2]
-    result: FloatArray = np.cross(unit(leaving), unit(arriving))
-    return result
+    return leaving, arriving
 
 
 def diagonal_normals(x: FloatArray) -> FloatArray:

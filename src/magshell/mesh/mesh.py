@@ -12,8 +12,10 @@ import numpy as np
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.drawing import drawing
 from magshell.errors import InputError, suggest
+from magshell.mesh.angles import check_folded
 from magshell.mesh.checks import (
     check_connectivity,
+    check_cuts,
     check_groups,
     check_name,
     check_numbers,
@@ -46,6 +48,11 @@ class Mesh:
         Edges: the node numbers of one end, the other end and the middle.
     node_groups : mapping of name to (k,)
         Node numbers.
+    cuts : sequence of str
+        Edge groups along which the surface is cut: nodes may lie on each other there (`magshell.mesh.cut` makes them).
+
+    Any number of elements may share an edge, at any angle, and neighbours may have opposite normals, as the sheets of
+    a folded plate, a rib or a Möbius band.
 
     Nodes and elements are counted from 0, here and in messages; the corners of an element from 1. A name
     belongs to one group only, whatever its kind. The arrays are copied and read-only.
@@ -53,9 +60,9 @@ class Mesh:
     Raises
     ------
     MeshError
-        Wrong shapes or numbers, unused nodes, an element twice, more than two elements on an edge, neighbours
-        with opposite normals, misshapen elements, elements that touch without being joined, a group that
-        makes no sense. The message names the elements.
+        Wrong shapes or numbers, unused nodes, an element twice, misshapen elements, elements that lie on each other at
+        a common edge or touch without being joined, a group or a cut that makes no sense. The message names the
+        elements.
     """
 
     points: FloatArray
@@ -63,6 +70,7 @@ class Mesh:
     element_groups: Mapping[str, IntArray] = field(default_factory=dict)
     edge_groups: Mapping[str, IntArray] = field(default_factory=dict)
     node_groups: Mapping[str, IntArray] = field(default_factory=dict)
+    cuts: Sequence[str] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "points", float_rows(self.points, 3, "Points"))
@@ -70,12 +78,15 @@ class Mesh:
         check_numbers(self.points, self.elements)
         check_connectivity(self.points, self.elements, self._edges)
         check_shapes(self.points, self.elements, self.size)
-        check_unmatched(self.points, self.elements, self._edges, self.size)
+        check_folded(self.points, self.elements, self._edges)
         checked = check_groups(
             self.element_groups, self.edge_groups, self.node_groups, self.points, self.elements, self._edges
         )
         for kind, names in zip(("element_groups", "edge_groups", "node_groups"), checked, strict=True):
             object.__setattr__(self, kind, names)
+        object.__setattr__(self, "cuts", check_cuts(self.cuts, self.edge_groups))
+        cuts = {name: self.edge_groups[name] for name in self.cuts}
+        check_unmatched(self.points, self.elements, self._edges, self.size, cuts)
 
     def __setstate__(self, state: dict[str, object]) -> None:
         """Of a pickle, which does not say that its arrays are read-only."""

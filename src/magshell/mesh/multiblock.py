@@ -8,12 +8,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from magshell.arrays import FloatArray, IntArray
+from magshell.arrays import FloatArray
 from magshell.errors import InputError, MeshError, suggest
 from magshell.mesh.arguments import divisions
 from magshell.mesh.geometry import COINCIDENT, FLAT_CORNER, unit
 from magshell.mesh.grid import grid
 from magshell.mesh.mesh import Mesh
+from magshell.mesh.welding import weld
 from magshell.mesh.wording import place
 
 
@@ -24,7 +25,7 @@ class _Block(NamedTuple):
 
 
 def blocks(corners: Mapping[str, Any], elements: Mapping[str, Sequence[int]] | Sequence[int]) -> Mesh:
-    """Quadrilateral blocks with straight sides, joined along the sides that they share.
+    """Quadrilateral blocks with straight sides, joined along the sides that they share, any number of them along one.
 
     Parameters
     ----------
@@ -45,7 +46,7 @@ def blocks(corners: Mapping[str, Any], elements: Mapping[str, Sequence[int]] | S
     InputError
         A block without a number of elements, or numbers for a block that does not exist.
     MeshError
-        A block that is not convex or runs clockwise; two blocks that overlap, that share a side with
+        A block that is not convex, or runs clockwise in the plane; two blocks that overlap, that share a side with
         different numbers of elements, or of which one has a corner within a side of the other. The message
         names the blocks.
     """
@@ -71,7 +72,7 @@ def blocks(corners: Mapping[str, Any], elements: Mapping[str, Sequence[int]] | S
         rows.append(pattern.elements + nodes)
         groups[block.name] = count + np.arange(len(pattern.elements))
         nodes, count = nodes + len(pattern.parameters), count + len(pattern.elements)
-    return Mesh(*_weld(np.concatenate(points), np.concatenate(rows), tolerance), element_groups=groups)
+    return Mesh(*weld(np.concatenate(points), np.concatenate(rows), tolerance), element_groups=groups)
 
 
 def _read(corners: Mapping[str, Any], elements: Mapping[str, Sequence[int]] | Sequence[int]) -> list[_Block]:
@@ -117,30 +118,23 @@ def _check_block(block: _Block, flat: bool) -> None:
 
 
 def _check_sides(every: list[_Block], tolerance: float) -> None:
-    """Refuse sides that more than two blocks have, that two walk in the same sense or divide differently."""
+    """Refuse sides that blocks divide differently."""
     corners = np.concatenate([block.corners for block in every])
-    _, numbers = _weld(corners, np.arange(len(corners)).reshape(-1, 4), tolerance)
+    _, numbers = weld(corners, np.arange(len(corners)).reshape(-1, 4), tolerance)
     sharing: dict[frozenset[int], list[tuple[_Block, int]]] = {}
     for block, row in zip(every, numbers.tolist(), strict=True):
         for side in range(4):
             sharing.setdefault(frozenset((row[side], row[(side + 1) % 4])), []).append((block, side))
     for found in sharing.values():
-        names = " and ".join(f"'{block.name}'" for block, _ in found)
-        (one, i), (other, j) = found[0], found[-1]
-        start, end = one.corners[i], one.corners[(i + 1) % 4]
-        where = f"the side from {place(start)} to {place(end)}"
-        if len(found) > 2:
-            raise MeshError(f"Blocks {names} share {where}: a shell surface has at most two blocks on a side.")
-        if len(found) == 2 and np.linalg.norm(other.corners[j] - start) <= tolerance:
-            raise MeshError(
-                f"Blocks {names} disagree about which side is up: both walk {where}. Reverse the corners of "
-                "one of them."
-            )
-        if one.divisions[i % 2] != other.divisions[j % 2]:
-            raise MeshError(
-                f"Blocks {names} share {where} but divide it into {one.divisions[i % 2]} and "
-                f"{other.divisions[j % 2]} elements: the numbers must be equal."
-            )
+        one, i = found[0]
+        for other, j in found[1:]:
+            if one.divisions[i % 2] != other.divisions[j % 2]:
+                start, end = one.corners[i], one.corners[(i + 1) % 4]
+                raise MeshError(
+                    f"Blocks '{one.name}' and '{other.name}' share the side from {place(start)} to {place(end)} but "
+                    f"divide it into {one.divisions[i % 2]} and {other.divisions[j % 2]} elements: the numbers must be "
+                    "equal."
+                )
 
 
 def _check_corners(every: list[_Block], tolerance: float) -> None:
@@ -172,14 +166,3 @@ def _overlap(one: FloatArray, other: FloatArray, tolerance: float) -> bool:
     first, second = across @ one[:, :2].T, across @ other[:, :2].T
     depth = np.minimum(first.max(axis=1) - second.min(axis=1), second.max(axis=1) - first.min(axis=1))
     return bool(depth.min() > tolerance)
-
-
-def _weld(points: FloatArray, elements: IntArray, tolerance: float) -> tuple[FloatArray, IntArray]:
-    """Merge coincident nodes and close up the numbering."""
-    from scipy.spatial import cKDTree
-
-    pairs = cKDTree(points).query_pairs(tolerance, output_type="ndarray")
-    keeper = np.arange(len(points))
-    np.minimum.at(keeper, pairs.max(axis=1), pairs.min(axis=1))
-    kept, numbers = np.unique(keeper[elements], return_inverse=True)
-    return points[kept], numbers.reshape(elements.shape)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import os
 import pathlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from magshell.errors import InputError
+from magshell.mesh.cuts import cut
 from magshell.mesh.drawings.reading import READERS, from_drawing
 from magshell.mesh.files.assembling import FileMesh
 from magshell.mesh.files.cad import from_cad
@@ -36,6 +37,10 @@ class Wishes:
         Layers of a drawing.
     gap : float or None
         Between lines of a drawing, m.
+    weld : float or None
+        As for `read`, m.
+    cuts : tuple of str
+        Edge groups along which the surface is cut.
     trust_script : bool
         As for `from_cad`.
     """
@@ -47,6 +52,8 @@ class Wishes:
     mid_surface: bool = False
     holes: tuple[str, ...] = ()
     gap: float | None = None
+    weld: float | None = None
+    cuts: tuple[str, ...] = ()
     trust_script: bool = False
 
 
@@ -63,22 +70,39 @@ def open_mesh(file: str | os.PathLike[str], wishes: Wishes) -> FileMesh:
     InputError
         What makes no sense for the file, by its key; or as `read`, `from_cad`, `from_drawing`, `mid_surface`.
     """
+    if meshes(file, wishes):
+        return _cut(_meshed(file, wishes), wishes.cuts)
+    name = pathlib.Path(file).name
+    for key in ("holes", "gap"):
+        _only_if(not getattr(wishes, key), key, f"is for drawings ({', '.join(DRAWINGS)}), and {name} is none")
+    _only_if(wishes.size is None, "size", f"{name} is a mesh, whose elements have their size")
+    return read(file, wishes.unit, wishes.second_order, wishes.closed, wishes.weld, wishes.cuts)
+
+
+def _meshed(file: str | os.PathLike[str], wishes: Wishes) -> FileMesh:
+    """What gmsh makes of a drawing, a geometry or a solid."""
     name, suffix = pathlib.Path(file).name, pathlib.Path(file).suffix.lower()
     if suffix in DRAWINGS:
-        for key in ("mid_surface", "second_order", "closed"):
+        for key in ("mid_surface", "second_order", "closed", "weld"):
             _only_if(not getattr(wishes, key), key, f"makes no sense for a drawing such as {name}")
         return from_drawing(file, wishes.size, wishes.unit, wishes.holes, wishes.gap)
     for key in ("holes", "gap"):
         _only_if(not getattr(wishes, key), key, f"is for drawings ({', '.join(DRAWINGS)}), and {name} is none")
     if wishes.mid_surface:
-        for key in ("second_order", "closed"):
+        for key in ("second_order", "closed", "weld"):
             _only_if(not getattr(wishes, key), key, "makes no sense with mid_surface")
         return mid_surface(file, wishes.size, wishes.unit)
-    if suffix in GEOMETRY:
-        _only_if(not wishes.second_order, "second_order", "is for meshes; a geometry is meshed to second order anyway")
-        return from_cad(file, wishes.size, wishes.unit, wishes.trust_script, wishes.closed)
-    _only_if(wishes.size is None, "size", f"{name} is a mesh, whose elements have their size")
-    return read(file, wishes.unit, wishes.second_order, wishes.closed)
+    _only_if(not wishes.second_order, "second_order", "is for meshes; a geometry is meshed to second order anyway")
+    _only_if(wishes.weld is None, "weld", "is for meshes; the surfaces of a geometry share their edges")
+    return from_cad(file, wishes.size, wishes.unit, wishes.trust_script, wishes.closed)
+
+
+def _cut(mesh: FileMesh, cuts: tuple[str, ...]) -> FileMesh:
+    """A mesh cut open along edge groups, which it tells."""
+    made = cut(mesh, cuts)
+    doubled = len(made.points) - len(mesh.points)
+    changes = (*mesh.origin.changes, f"cut open along {' and '.join(cuts)}: {doubled} nodes doubled")
+    return replace(made, origin=replace(mesh.origin, changes=changes)) if cuts else mesh
 
 
 def _only_if(fine: bool, key: str, reason: str) -> None:

@@ -80,9 +80,8 @@ def split(mesh: Mesh, pattern: str = "alternating", elements: ArrayLike | None =
         for name, members in mesh.element_groups.items()
     }
     points = np.concatenate([mesh.points, inside.reshape(-1, 3)])
-    return Mesh(
-        points, np.concatenate([np.stack(piece) for piece in pieces]), groups, mesh.edge_groups, mesh.node_groups
-    )
+    rows = np.concatenate([np.stack(piece) for piece in pieces])
+    return Mesh(points, rows, groups, mesh.edge_groups, mesh.node_groups, mesh.cuts)
 
 
 def _middles(x: FloatArray, pattern: str, rising: AnyArray) -> FloatArray:
@@ -106,10 +105,9 @@ def _middles(x: FloatArray, pattern: str, rising: AnyArray) -> FloatArray:
 def _turns(mesh: Mesh) -> AnyArray:
     """True or false for each element, such that neighbours differ wherever the mesh is a checkerboard."""
     edges = find_edges(mesh.elements)
-    last = np.empty_like(edges.first_side)
-    last[edges.edge_of_side] = np.arange(len(edges.sides))
+    pairs = (side // 4 for side in edges.pairs)
     neighbours: list[list[int]] = [[] for _ in mesh.elements]
-    for one, other in zip(edges.first_side // 4, last // 4, strict=True):
+    for one, other in zip(*pairs, strict=True):
         neighbours[one].append(other)
         neighbours[other].append(one)
     colour = np.full(len(mesh.elements), -1)

@@ -16,7 +16,7 @@ from magshell.problem.building.mesh import made_by_gmsh
 
 FOLDER = "inputs"
 SELECTIONS = ("element_groups", "edge_groups", "node_groups")
-MESH_OF_A_COPY = ("file", "closed")
+MESH_OF_A_COPY = ("file", "closed", "cuts")
 # What the path does not depend on, or may change on the way.
 FREE = ("title", "description", "results", "solver")
 
@@ -43,7 +43,7 @@ def alone(problem: Problem) -> tuple[str, dict[str, bytes]]:
         copies[table["file"]] = content
         for key in [key for key in document["mesh"] if key not in table]:
             document["mesh"].remove(key)
-        document["mesh"].update({key: table[key] for key in MESH_OF_A_COPY})
+        document["mesh"].update({key: table[key] for key in MESH_OF_A_COPY if key in table})
     for key, name in named:
         if key == "mesh.file" and meshed is not None:
             continue
@@ -81,7 +81,8 @@ def _meshed(problem: Problem) -> tuple[dict[str, Any], bytes] | None:
         for key, every in zip(SELECTIONS, groups, strict=True)
     ]
     name = f"{FOLDER}/{pathlib.Path(given.get('file', 'polygon')).stem}.msh"
-    return {**own, "file": name, "closed": True}, msh(Mesh(mesh.points, mesh.elements, *kept), "m")
+    table = {**own, "file": name, "closed": True, **({"cuts": list(mesh.cuts)} if mesh.cuts else {})}
+    return table, msh(Mesh(mesh.points, mesh.elements, *kept, cuts=mesh.cuts), "m")
 
 
 def _name(source: pathlib.Path, content: bytes, copies: dict[str, bytes]) -> str:

@@ -18,6 +18,7 @@ from magshell.model.supports import Support, SymmetryPlane
 from magshell.model.words import offset_of, span
 from magshell.problem import (
     fields,
+    junction_report,
     load_report,
     region_report,
     remanence_report,
@@ -106,6 +107,7 @@ def _mesh(problem: Problem, extent: float) -> Iterator[tuple[str, str]]:
     )
     if len(mesh.parts) > 1:
         yield "separate parts", str(len(mesh.parts))
+    yield from junction_report.lines(mesh)
     for axis in range(3):
         span = [_coordinate(each[axis], extent) for each in (least, greatest)]
         yield f"X{axis + 1}", " to ".join(span)

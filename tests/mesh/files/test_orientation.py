@@ -37,7 +37,7 @@ def test_any_elements_turned_come_back(turned):
     rows = mesh.elements.copy()
     chosen = np.array(sorted(turned), dtype=int)
     rows[chosen] = rows[chosen][:, TURNED_QUAD]
-    back, count = agreeing(rows)
+    back, count, _ = agreeing(rows)
     assert count == len(turned)
     assert described(Mesh(mesh.points, back))["elements"] == described(mesh)["elements"]
 
@@ -48,7 +48,7 @@ def test_triangles_and_separate_parts_are_turned_too():
     apart = np.where(rows >= 0, rows + rows.max() + 1, -1)
     both = np.concatenate([rows, apart[:, TURNED_TRIANGLE]])
     both[[1, 15]] = both[[1, 15]][:, TURNED_TRIANGLE]
-    back, count = agreeing(both)
+    back, count, _ = agreeing(both)
     assert count == 2
     assert sorted(np.flatnonzero((back != both).any(axis=1))) == [1, 15]
     full = np.array([[0, 1, 2, 2, 3, 4, 2, 5]])

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from magshell.arrays import IntArray
 from magshell.errors import InputError, MeshError
+from magshell.mesh.checks import check_cuts
+from magshell.mesh.cuts import opened
 from magshell.mesh.edges import edge_keys, find_edges
 from magshell.mesh.files.cells import MISSING
 from magshell.mesh.files.contents import Contents
@@ -18,12 +20,6 @@ from magshell.mesh.files.raising import raise_order
 from magshell.mesh.files.skins import skin_of_a_solid
 from magshell.mesh.mesh import Mesh
 from magshell.units import LENGTH
-
-JOINING = (
-    "Surfaces that belong together must share the nodes of their common edge: in gmsh join the surfaces before meshing "
-    "(Coherence, or BooleanFragments), or the nodes of a finished mesh (Coherence Mesh)."
-)
-_UNJOINED = ("not joined", "do not match")
 
 Groups = dict[str, IntArray]
 
@@ -57,7 +53,9 @@ class FileMesh(Mesh):
     origin: Origin = field(kw_only=True)
 
 
-def assemble(contents: Contents, name: str, unit: str, second_order: bool, closed: bool = False) -> FileMesh:
+def assemble(
+    contents: Contents, name: str, unit: str, second_order: bool, closed: bool = False, cuts: Sequence[str] = ()
+) -> FileMesh:
     """The mesh that a file holds.
 
     Parameters
@@ -71,12 +69,14 @@ def assemble(contents: Contents, name: str, unit: str, second_order: bool, close
         Whether elements of first order get middles.
     closed : bool
         Whether a closed surface with sharp edges or parallel faces is meant, and not the skin of a solid.
+    cuts : sequence of str
+        Groups of edges along which the surface is cut, or to be cut.
 
     Raises
     ------
     InputError
         Solids and their skins, elements that cannot be used, no surface, elements of first order that are not to be
-        raised, a surface with one side only.
+        raised; no such group to cut along.
     MeshError
         What `Mesh` refuses.
     """
@@ -84,12 +84,11 @@ def assemble(contents: Contents, name: str, unit: str, second_order: bool, close
     rows, element_groups = _surface(contents, name, changes)
     rows = _triangles_from_quads(rows)
     rows, element_groups = _without_repetitions(rows, element_groups, changes)
-    try:
-        rows, turned = agreeing(rows)
-    except InputError as error:
-        raise InputError(f"{name}: {error}.") from None
+    rows, turned, against = agreeing(rows)
     if turned:
         changes.append(f"{turned} of {len(rows)} elements turned, so that the normals of neighbours agree")
+    if against:
+        changes.append(f"the surface has one side only: its normals change sign across {against} edges")
     points = contents.points
     if not closed:
         _no_skin(skin_of_a_solid(points, rows), name, len(rows))
@@ -120,18 +119,27 @@ def assemble(contents: Contents, name: str, unit: str, second_order: bool, close
     )
     names, renamed = named((element_groups, edge_groups, node_groups))
     changes += renamed
+    mesh = (
+        points[used] * float(LENGTH.units[unit]),
+        compact.reshape(rows.shape),
+        {names[1, group]: new[edges] for group, edges in edge_groups.items()},
+        {names[2, group]: nodes for group, nodes in node_groups.items()},
+    )
+    points, rows, edge_groups, node_groups = opened(*mesh, check_cuts(cuts, mesh[2]))
+    if len(points) > len(used):
+        changes.append(f"cut open along {' and '.join(cuts)}: {len(points) - len(used)} nodes doubled")
     try:
         return FileMesh(
-            points[used] * float(LENGTH.units[unit]),
-            compact.reshape(rows.shape),
-            element_groups={names[0, group]: rows_ for group, rows_ in element_groups.items()},
-            edge_groups={names[1, group]: new[edges] for group, edges in edge_groups.items()},
-            node_groups={names[2, group]: nodes for group, nodes in node_groups.items()},
+            points,
+            rows,
+            {names[0, group]: rows_ for group, rows_ in element_groups.items()},
+            edge_groups,
+            node_groups,
+            cuts,
             origin=Origin(name, unit, tuple(changes)),
         )
     except MeshError as error:
-        advice = f" {JOINING}" if any(phrase in str(error) for phrase in _UNJOINED) else ""
-        raise MeshError(f"{name}: {error}{advice}") from None
+        raise MeshError(f"{name}: {error}") from None
 
 
 def _stacked(contents: Contents, dimension: int, width: int) -> tuple[IntArray, Groups]:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from magshell.errors import InputError
+from magshell.errors import InputError, MeshError
 from magshell.mesh.files.apart import apart
 from magshell.mesh.files.assembling import FileMesh, assemble
 from magshell.mesh.files.contents import GROUPED
@@ -35,6 +35,12 @@ GOOD = 0.3
 """Worst scaled Jacobian with which the first mesh is taken; quadrilaterals with a worse one are cut."""
 NO_SIZE = 1e21
 """Mesh.MeshSizeMax where no file has set it is larger than this."""
+
+JOINING = (
+    "Surfaces that belong together must share the nodes of their common edge: join them before meshing (Coherence, or "
+    "BooleanFragments)."
+)
+UNJOINED = ("not joined", "do not match")
 
 
 class Attempt(NamedTuple):
@@ -271,7 +277,11 @@ def meshed(gmsh: Any, name: str, unit: str, attempt: Attempt, closed: bool = Fal
     if name.lower().endswith(IGES):
         gmsh.model.mesh.removeDuplicateNodes()
     _put_on_surfaces(gmsh)
-    mesh = with_bad_ones_cut(assemble(contents_of(gmsh, name), name, unit, False, closed), GOOD)
+    try:
+        mesh = with_bad_ones_cut(assemble(contents_of(gmsh, name), name, unit, False, closed), GOOD)
+    except MeshError as error:
+        advice = f" {JOINING}" if any(phrase in str(error) for phrase in UNJOINED) else ""
+        raise MeshError(f"{error}{advice}") from None
     triangles = int(mesh.triangles.sum())
     return Candidate(mesh, triangles, worst(mesh)["scaled_jacobian"].value)
 

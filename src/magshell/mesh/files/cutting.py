@@ -35,4 +35,6 @@ def with_bad_ones_cut(mesh: FileMesh, least: float) -> FileMesh:
         return mesh
     what = f"{bad.size} quadrilateral{'s' * (bad.size > 1)} with a bad corner cut into triangles"
     origin = replace(mesh.origin, changes=(*mesh.origin.changes, what))
-    return FileMesh(cut.points, cut.elements, cut.element_groups, cut.edge_groups, cut.node_groups, origin=origin)
+    return FileMesh(
+        cut.points, cut.elements, cut.element_groups, cut.edge_groups, cut.node_groups, cut.cuts, origin=origin
+    )

@@ -31,7 +31,7 @@ class Sides(NamedTuple):
     edge: IntArray
     """(4 elements,): edge number."""
     crease: BoolArray
-    """(4 elements,): whether the elements there meet at an angle that is meant."""
+    """(4 elements,): whether the two elements there meet at an angle that is meant."""
     real: BoolArray
     """(4 elements,): not the side without length of a triangle."""
     normals: FloatArray
@@ -49,26 +49,28 @@ def side_normals(points: FloatArray, rows: IntArray) -> Sides:
     ----------
     points : (nodes, 3)
     rows : (elements, 8)
-        Elements whose neighbours agree which side is up; middles may be missing.
+        Elements whose neighbours agree which side is up, as far as they can; middles may be missing. Where they do not,
+        and where three or more meet, the surface is taken to end.
     """
     edges = find_edges(rows)
     ends = edges.sides[:, :2]
     real = ends[:, 0] != ends[:, 1]
     flat = unit(diagonal_normals(points[rows[:, :4]]))
-    crease = _creases(rows, flat, edges.edge_of_side, real)
-    sheet = _sheets(rows, edges.edge_of_side, crease, real)
+    partner = _partners(edges.edge_of_side, real)
+    against = (partner >= 0) & (edges.sides[:, 0] == edges.sides[partner, 0])
+    crease = _creases(rows, flat, partner, against)
+    sheet = _sheets(rows, np.where(crease | against, -1, partner))
     normals = _fitted(points, rows, sheet, flat)
     corner = SIDES[:, :2]
     return Sides(ends, edges.edge_of_side, crease, real, normals[sheet[:, corner]].reshape(-1, 2, 3))
 
 
-def _creases(rows: IntArray, flat: FloatArray, edge: IntArray, real: BoolArray) -> BoolArray:
+def _creases(rows: IntArray, flat: FloatArray, partner: IntArray, against: BoolArray) -> BoolArray:
     """Sides (4 elements,) at a crease: a sharp angle, or one that stands alone among its neighbours."""
     count = len(rows)
     owner = np.repeat(np.arange(count), 4)
-    partner = _partners(edge, real)
     neighbour = np.where(partner >= 0, owner[partner], owner)
-    cosine = (flat[owner] * flat[neighbour]).sum(axis=1).clip(-1.0, 1.0)
+    cosine = np.where(against, -1.0, 1.0) * (flat[owner] * flat[neighbour]).sum(axis=1).clip(-1.0, 1.0)
     angle = np.arccos(cosine)
     ring = neighbour.reshape(count, 4)
     around = np.concatenate([4 * ring[:, :, None] + np.arange(4)], axis=2).reshape(count, 16)
@@ -95,14 +97,14 @@ def _partners(edge: IntArray, real: BoolArray) -> IntArray:
     return partner
 
 
-def _sheets(rows: IntArray, edge: IntArray, crease: BoolArray, real: BoolArray) -> IntArray:
+def _sheets(rows: IntArray, partner: IntArray) -> IntArray:
     """Number (elements, 4) of the sheet about each corner: corners of one node, joined across its smooth edges."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 
     count = len(rows)
-    side = np.flatnonzero(real & ~crease & (_partners(edge, real) >= 0))
-    other = _partners(edge, real)[side]
+    side = np.flatnonzero(partner >= 0)
+    other = partner[side]
     begin, end = SIDES[side % 4, 0], SIDES[side % 4, 1]
     other_begin, other_end = SIDES[other % 4, 0], SIDES[other % 4, 1]
     swapped = rows[side // 4, begin] != rows[other // 4, other_begin]

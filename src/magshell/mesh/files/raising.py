@@ -46,7 +46,8 @@ def raise_order(points: FloatArray, rows: IntArray) -> Raised:
     ----------
     points : (nodes, 3)
     rows : (elements, 8)
-        Elements whose neighbours agree which side is up; -1 where a middle is missing. Middles that are there stay.
+        Elements whose neighbours agree which side is up, as far as they can; -1 where a middle is missing. Middles that
+        are there stay.
 
     Notes
     -----
@@ -57,7 +58,8 @@ def raise_order(points: FloatArray, rows: IntArray) -> Raised:
 
     This is exact for a circular arc whose normals are exact, and straight where the chord lies in the surface. At a
     crease, the two surfaces that meet there both say how far the middle is off along their normals; the shortest
-    vector that does both is taken, so that a tube and its lid share their circle. A free edge that lies in a plane
+    vector that does both is taken, so that a tube and its lid share their circle. Where three or more meet, it is that
+    of the two at the angle nearest to a right one. A free edge that lies in a plane
     with those before and after it stays in that plane.
     """
     edges = find_edges(rows)
@@ -105,6 +107,8 @@ def _offsets(
     found, start, sharing = np.unique(edge[order], return_index=True, return_counts=True)
     result = np.zeros((count, 3))
     one, other = order[start], order[start + (sharing > 1)]
+    for at in np.flatnonzero(sharing > 2):
+        one[at], other[at] = _steepest(order[start[at] : start[at] + sharing[at]], normal)
     result[found] = _meeting(normal[one], normal[other], offset[one], offset[other])
     free = one[sharing == 1]
     plane, known = _planes_of_free_edges(points, ends, free)
@@ -112,6 +116,13 @@ def _offsets(
     own, free, plane = found[sharing == 1][known & across], free[known & across], plane[known & across]
     result[own] = _meeting(normal[free], plane, result[own], np.zeros_like(plane))
     return result
+
+
+def _steepest(sides: IntArray, normal: FloatArray) -> IntArray:
+    """The two of several sides on an edge whose surfaces meet at the angle nearest to a right one."""
+    cosine = np.abs(normal[sides] @ normal[sides].T)
+    pair: IntArray = sides[np.array(np.unravel_index(np.argmin(cosine), cosine.shape))]
+    return pair
 
 
 def _planes_of_free_edges(points: FloatArray, ends: IntArray, free: IntArray) -> tuple[FloatArray, BoolArray]:

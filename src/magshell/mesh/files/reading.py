@@ -5,14 +5,15 @@ from __future__ import annotations
 import os
 import pathlib
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from importlib.util import find_spec
 
-from magshell.errors import InputError
+from magshell.errors import InputError, MeshError
 from magshell.mesh.files.apart import apart
 from magshell.mesh.files.assembling import FileMesh, assemble
 from magshell.mesh.files.contents import Contents
 from magshell.mesh.files.paths import GEOMETRY, readable
+from magshell.mesh.files.seams import ways_out, welded
 from magshell.mesh.files.units import agreed
 
 SECONDS, BYTES_PER_SECOND = 60, 200_000
@@ -20,7 +21,12 @@ SECONDS, BYTES_PER_SECOND = 60, 200_000
 
 
 def read(
-    file: str | os.PathLike[str], unit: str | None = None, second_order: bool = False, closed: bool = False
+    file: str | os.PathLike[str],
+    unit: str | None = None,
+    second_order: bool = False,
+    closed: bool = False,
+    weld: float | None = None,
+    cuts: Sequence[str] = (),
 ) -> FileMesh:
     """Read a mesh with its groups.
 
@@ -39,6 +45,12 @@ def read(
     closed : bool
         Whether a closed surface with sharp edges, or with two flat faces that are parallel, is meant as a shell, like
         a thin-walled box. Otherwise it is taken for the skin of a solid and refused.
+    weld : float, optional
+        Nodes that are no further apart, m, become one: those of a tube with an open seam, or of surfaces meshed one by
+        one. Nodes that lie on each other are refused otherwise.
+    cuts : sequence of str
+        Groups of edges along which the surface is cut. Where nodes lie on each other there, they stay apart; where they
+        do not, they are doubled, except at ends inside the surface.
 
     Returns
     -------
@@ -51,7 +63,7 @@ def read(
     ------
     InputError
         No such file, an unknown format, a file that is not what it should be (with the line), no unit, elements that
-        make no shell.
+        make no shell; a tolerance that merges nodes of one element; a cut along no group.
     MeshError
         What `Mesh` refuses.
     """
@@ -63,7 +75,14 @@ def read(
         )
     readable(path)
     contents = contents_of(path, name)
-    return assemble(contents, name, agreed(unit, contents.unit, name), second_order, closed)
+    own, cuts = agreed(unit, contents.unit, name), (cuts,) if isinstance(cuts, str) else tuple(cuts)
+    if weld is not None:
+        contents = welded(contents, weld, own, cuts)
+    try:
+        return assemble(contents, name, own, second_order, closed, cuts)
+    except MeshError as error:
+        advice = f" {ways_out(contents, own)}" if "not joined" in str(error) else ""
+        raise MeshError(f"{error}{advice}") from None
 
 
 def contents_of(path: pathlib.Path, name: str) -> Contents:

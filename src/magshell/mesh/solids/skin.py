@@ -126,10 +126,9 @@ def skin_from(points: FloatArray, triangles: IntArray, name: str) -> Skin:
         )
     none = np.full(len(triangles), MISSING)
     rows = np.column_stack([triangles, triangles[:, 2], none, none, triangles[:, 2], none])
-    try:
-        rows, turned = agreeing(rows)
-    except InputError as error:
-        raise InputError(f"{name}: {error}") from None
+    rows, turned, against = agreeing(rows)
+    if against:
+        raise InputError(f"{name}: is not the skin of a solid: the surface has one side only")
     skin = Skin(points, rows[:, :3])
     if turned:
         skin = Skin(points, _outward(skin))

@@ -40,7 +40,7 @@ def _read(table: schema.MeshFile, folder: pathlib.Path) -> Mesh:
     try:
         mesh = open_mesh(folder / table.file, wishes_of(table))
     except InputError as error:
-        of_key = re.match(r"(unit|size|mid_surface|second_order|closed|holes|gap): ", str(error))
+        of_key = re.match(r"(unit|size|mid_surface|second_order|closed|holes|gap|weld|cuts): ", str(error))
         raise InputError(f"mesh.{error}" if of_key else f"mesh.file: {error}") from None
     if len(mesh.elements) > MOST_ELEMENTS:
         raise InputError(f"mesh.file: {table.file} has {len(mesh.elements)} elements; at most {MOST_ELEMENTS}")
@@ -57,6 +57,8 @@ def wishes_of(table: schema.MeshFile) -> Wishes:
         mid_surface=table.mid_surface,
         holes=table.holes,
         gap=table.gap,
+        weld=table.weld,
+        cuts=table.cuts,
     )
 
 

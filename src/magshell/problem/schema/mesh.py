@@ -136,6 +136,8 @@ class MeshFile(_Groups):
     gap: f.PositiveLength | None = None
     second_order: StrictBool = False
     closed: StrictBool = False
+    weld: f.PositiveLength | None = None
+    cuts: f.Names = ()
 
 
 Generated: TypeAlias = Rectangle | Annulus | Blocks | Cylinder | SpherePatch | Polygon

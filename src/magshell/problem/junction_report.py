@@ -1,0 +1,55 @@
+"""What `magshell check` says of the lines at which sheets meet: kinks, joints, opposite normals, cuts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from magshell.arrays import IntArray
+from magshell.mesh import Mesh
+from magshell.mesh.geometry import COINCIDENT
+from magshell.mesh.junctions import Line, junctions_of
+from magshell.units import LENGTH, show
+from magshell.wording import counted
+
+MOST_LINES = 4
+
+
+def lines(mesh: Mesh) -> Iterator[tuple[str, str]]:
+    """Label and text of every line of the report."""
+    found = junctions_of(mesh)
+    for label, each in (("kinks", found.kinks), ("joints", found.joints), ("normals change sign", found.flips)):
+        if each:
+            yield label, _said(mesh, each, angles=label == "kinks", groups=label != "normals change sign")
+    if mesh.cuts:
+        yield "cuts", ", ".join(f"{name} ({counted(len(mesh.nodes_of(name)), 'node')})" for name in mesh.cuts)
+
+
+def _said(mesh: Mesh, found: Sequence[Line], angles: bool, groups: bool) -> str:
+    nodes = len(np.unique(np.concatenate([line.nodes for line in found])))
+    turned = ""
+    if angles:
+        least, greatest = (np.degrees([line.angle[i] for line in found]) for i in (0, 1))
+        span = [f"{value:.4g}" for value in (least.min(), greatest.max())]
+        turned = f", {' to '.join(dict.fromkeys(span))}°"
+    places = [_named(line, groups) + _place(mesh, line) for line in found[:MOST_LINES]]
+    more = [f"and {len(found) - MOST_LINES} more"] if len(found) > MOST_LINES else []
+    return f"{counted(len(found), 'line')}, {counted(nodes, 'node')}{turned}: {'; '.join([*places, *more])}"
+
+
+def _named(line: Line, groups: bool) -> str:
+    if not groups:
+        return ""
+    return f"{', '.join(line.groups)} " if line.groups else "without a name "
+
+
+def _place(mesh: Mesh, line: Line) -> str:
+    if line.closed:
+        return f"a loop through {_point(mesh, line.edges[0, 0])}"
+    return f"from {_point(mesh, line.edges[0, 0])} to {_point(mesh, line.edges[-1, 1])}"
+
+
+def _point(mesh: Mesh, node: IntArray) -> str:
+    x = np.where(np.abs(mesh.points[node]) > COINCIDENT * mesh.size, mesh.points[node], 0.0)
+    return f"({', '.join(show(value, LENGTH) for value in x)})"
