@@ -64,9 +64,7 @@ def extruded(lines: Sequence[tuple], per_line: int = 2, across: int = 2, width: 
     return Mesh(np.array(points), np.array(elements), element_groups=groups, edge_groups=edge_groups)
 
 
-def jointed(
-    mesh: Mesh, element=QUADRATIC, coupling=None, hinges: Sequence[Hinge] = (), rigid: Sequence[RigidBody] = (), **given
-):
+def jointed(mesh: Mesh, element=QUADRATIC, coupling=None, hinges=(), rigid=(), **given):
     """A body that nothing holds, without symmetry of material or remanence; `given` are fields of `Unsupported`."""
     shell = Shell(
         mesh,
