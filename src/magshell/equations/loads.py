@@ -30,24 +30,26 @@ class LoadTerm:
 
     def __init__(self, applied: Sequence[Applied], constraints: Constraints) -> None:
         self._applied, self._constraints = applied, constraints
-        self._pairs = [one.pairs for one in applied]
+        self._pairs = [tuple(one.pairs) for one in applied]
 
     def place(self, insertion: Insertion) -> None:
         """Tell the term where its blocks go."""
-        self._at = [None if pairs is None else insertion.blocks(pairs) for pairs in self._pairs]
+        self._at = [[insertion.blocks(pairs) for pairs in own] for own in self._pairs]
         free = insertion.numbering.number >= 0
         undeformed = State.undeformed(len(free), 0, 0)
         carrying = np.zeros(len(free), dtype=bool)
-        for one in self._applied:
-            couples = np.flatnonzero(np.any(one.forces(undeformed)[:, COLUMNS["omega"]], axis=1))
-            carrying[couples] = True
+        for one, own in zip(self._applied, self._pairs, strict=True):
+            carrying[np.flatnonzero(np.any(one.forces(undeformed)[:, COLUMNS["omega"]], axis=1))] = True
+            for pairs in own:
+                if pairs.row_field == "omega":
+                    carrying[pairs.rows] = True
         nodes = np.flatnonzero(carrying & np.all(free[:, COLUMNS["omega"]], axis=1))
         self._couples = Pairs("omega", "omega", nodes, nodes)
         self._couples_at = insertion.blocks(self._couples)
 
     def couplings(self) -> Sequence[IntArray]:
         """See `Term`."""
-        pairs = [np.column_stack([one.rows, one.columns]) for one in self._pairs if one is not None]
+        pairs = [np.column_stack([one.rows, one.columns]) for own in self._pairs for one in own]
         return [np.unique(np.sort(one, axis=1), axis=0) for one in pairs if len(one)]
 
     def forces(self, state: State, amplitudes: FloatArray) -> FloatArray:
@@ -78,9 +80,10 @@ class LoadTerm:
         and reaction; where more are, [c]× does not meet two free rotations.
         """
         loads = zip(instant.loading.loads, self._applied, self._pairs, self._at, strict=True)
-        for amplitude, one, pairs, at in loads:
-            if amplitude and at is not None and pairs is not None:
-                insertion.add_blocks(pairs, at, weights.displacement * amplitude * one.stiffness(instant.state))
+        for amplitude, one, own, places in loads:
+            if amplitude and own:
+                for pairs, at, blocks in zip(own, places, one.stiffness(instant.state), strict=True):
+                    insertion.add_blocks(pairs, at, weights.displacement * amplitude * blocks)
         if self._couples.rows.size:
             couples = forces[self._couples.rows, COLUMNS["omega"]]
             insertion.add_blocks(self._couples, self._couples_at, -0.5 * weights.displacement * cross_matrix(couples))
