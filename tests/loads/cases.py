@@ -32,6 +32,7 @@ class Case(NamedTuple):
     """Whether it turns with the deformed body."""
     conservative: bool = True
     micro_rotation: bool = True
+    """Without it, of a moment what is normal to the first node's director is meant: the rest is refused."""
 
 
 def _cases() -> dict[str, Case]:
@@ -46,7 +47,7 @@ def _cases() -> dict[str, Case]:
         cases[f"moment on {kind}"] = Case(ms.Moment(group, V), conservative=False)
         cases[f"turning force on {kind}"] = Case(ms.Force(group, V, follower=True), True, False)
         cases[f"turning moment on {kind}"] = Case(ms.Moment(group, V, follower=True), True, False)
-        cases[f"moment on directors of {kind}"] = Case(ms.Moment(group, V), conservative=False, micro_rotation=False)
+    cases["moment on a director"] = Case(ms.Moment("corner", V), conservative=False, micro_rotation=False)
     return cases
 
 
@@ -68,7 +69,11 @@ def applied(load: Any, shell: ms.Shell) -> Applied:
 
 
 def on_mesh(case: Case, mesh: Mesh, element: Any = QUADRATIC) -> Applied:
-    return applied(case.load, shell_of(mesh, element, case.micro_rotation))
+    load = case.load
+    if not case.micro_rotation:
+        D = nodal_normals(mesh.points, mesh.elements)[mesh.nodes_of(load.group)[0]]
+        load = dataclasses.replace(load, total=load.total - D @ load.total * D)
+    return applied(load, shell_of(mesh, element, case.micro_rotation))
 
 
 def at_rest(mesh: Mesh) -> State:
@@ -116,8 +121,14 @@ def turned_columns(nodal: np.ndarray, Q: Rotation) -> np.ndarray:
 def product(load: Applied, state: State, increment: np.ndarray) -> np.ndarray:
     """The load's part of the tangent times an increment (nodes, 11)."""
     result = np.zeros_like(increment)
-    if load.pairs is not None:
-        rows, columns = (COLUMNS[field] for field in (load.pairs.row_field, load.pairs.column_field))
-        parts = np.einsum("nij,nj->ni", load.stiffness(state), increment[load.pairs.columns, columns])
-        np.add.at(result[:, rows], load.pairs.rows, parts)
+    for pairs, blocks in zip(load.pairs, load.stiffness(state), strict=True):
+        rows, columns = (COLUMNS[field] for field in (pairs.row_field, pairs.column_field))
+        parts = np.einsum("nij,nj->ni", blocks, increment[pairs.columns, columns])
+        np.add.at(result[:, rows], pairs.rows, parts)
     return result
+
+
+def torques(mesh: Mesh, state: State, forces: np.ndarray) -> np.ndarray:
+    """Torques (nodes, 3) of the forces on directors and the couples on micro-rotations."""
+    directors = nodal_normals(mesh.points, mesh.elements) + state.w
+    return np.cross(directors, forces[:, COLUMNS["w"]]) + forces[:, COLUMNS["omega"]]

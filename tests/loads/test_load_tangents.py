@@ -40,7 +40,7 @@ def test_the_difference_converges_with_its_second_order(case):
     load, state, increment = on_mesh(case, CURVED), crumpled(CURVED, 3), increment_of(CURVED, 4)
     exact, size = product(load, state, increment), np.abs(load.forces(state)).max()
     coarse, fine = (np.abs(difference(load, state, increment, h) - exact).max() / size for h in (2e-2, 1e-2))
-    polynomial = load.pairs is None or case.load.kind == "pressure"
+    polynomial = not load.pairs or case.load.kind == "pressure"
     if polynomial:
         assert coarse < 1e-12, f"{coarse:.1e}"
     else:
@@ -58,7 +58,7 @@ def test_no_tangent_beyond_the_pairs(case):
         alone = np.zeros_like(increment)
         alone[:, own] = increment[:, own]
         changes = not np.array_equal(load.forces(moved(state, alone)), forces)
-        assert changes == (load.pairs is not None and load.pairs.column_field == field), field
+        assert changes == any(pairs.column_field == field for pairs in load.pairs), field
 
 
 @each_case
@@ -70,7 +70,7 @@ def test_what_is_said_of_a_potential(case):
     assert load.conservative == case.conservative
     if case.conservative:
         assert forth == back
-    elif load.pairs is not None:
+    else:
         assert abs(forth - back) > 1e-3 * max(abs(forth), abs(back))
 
 

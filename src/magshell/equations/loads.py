@@ -32,26 +32,28 @@ class LoadTerm:
 
     def __init__(self, applied: Sequence[Applied], constraints: Constraints) -> None:
         self._applied, self._constraints = applied, constraints
-        self._pairs = [one.pairs for one in applied]
+        self._pairs = [tuple(one.pairs) for one in applied]
 
     def place(self, insertion: Insertion, dependence: Dependence) -> None:
         """Tell the term where its blocks go."""
         free = insertion.numbering.number >= 0
         undeformed = State.undeformed(len(free), 0, 0)
         loaded, carrying = np.zeros((2, len(free)), dtype=bool)
-        for one in self._applied:
+        for one, own in zip(self._applied, self._pairs, strict=True):
             forces = one.forces(undeformed)
             carrying[np.flatnonzero(np.any(forces[:, COLUMNS["omega"]], axis=1))] = True
             loaded[np.flatnonzero(np.any(forces[:, :6], axis=1))] = True
+            for pairs in own:
+                (carrying if pairs.row_field == "omega" else loaded)[pairs.rows] = True
         self._dependence = dependence
-        self._places = NodalBlocks(insertion, dependence, [pairs for pairs in self._pairs if pairs is not None], loaded)
+        self._places = NodalBlocks(insertion, dependence, [pairs for own in self._pairs for pairs in own], loaded)
         nodes = np.flatnonzero(carrying & np.all(free[:, COLUMNS["omega"]], axis=1))
         self._couples = Pairs("omega", "omega", nodes, nodes)
         self._couples_at = insertion.blocks(self._couples)
 
     def couplings(self) -> Sequence[IntArray]:
         """See `Term`."""
-        pairs = [np.column_stack([one.rows, one.columns]) for one in self._pairs if one is not None]
+        pairs = [np.column_stack([one.rows, one.columns]) for own in self._pairs for one in own]
         return [np.unique(np.sort(one, axis=1), axis=0) for one in pairs if len(one)]
 
     def forces(self, state: State, amplitudes: FloatArray) -> FloatArray:
@@ -84,8 +86,9 @@ class LoadTerm:
         the loads' couple where no rotation is held. Where exactly one is, the loops over elements have all of c, loads
         and reaction; where more are, [c]× does not meet two free rotations.
         """
-        loads = zip(instant.loading.loads, self._applied, self._pairs, strict=True)
-        blocks = [amplitude * one.stiffness(instant.state) for amplitude, one, pairs in loads if pairs is not None]
+        blocks: list[FloatArray | None] = []
+        for amplitude, one, own in zip(instant.loading.loads, self._applied, self._pairs, strict=True):
+            blocks += [amplitude * block for block in one.stiffness(instant.state)] if amplitude else [None] * len(own)
         self._places.insert(weights.displacement, forces, blocks, levers)
         if self._couples.rows.size:
             couples = forces[self._couples.rows, COLUMNS["omega"]]

@@ -44,14 +44,15 @@ class NodalBlocks:
         self._levers_at = insertion.blocks(self._levers)
         self._transported = insertion.numbering.one_rotation_held[rows]
 
-    def insert(self, weight: float, forces: FloatArray, blocks: Sequence[FloatArray], levers: Levers) -> None:
+    def insert(self, weight: float, forces: FloatArray, blocks: Sequence[FloatArray | None], levers: Levers) -> None:
         """Add weight times the blocks (n, 3, 3) of each of the pairs, and of the levers of forces (rows, 11).
 
-        Blocks are derivatives of minus the forces, as the residual has them.
+        Blocks are derivatives of minus the forces, as the residual has them; None for none.
         """
         for (pairs, at), chained, block in zip(self._direct, self._chained, blocks, strict=True):
-            self._insertion.add_blocks(pairs, at, weight * block)
-            chained.insert(weight, block, levers)
+            if block is not None:
+                self._insertion.add_blocks(pairs, at, weight * block)
+                chained.insert(weight, block, levers)
         rows = self._levers.rows
         if rows.size:
             change = self._dependence.curvature(forces, levers)[rows]

@@ -176,10 +176,10 @@ class Model:
         nodes = np.zeros(len(self.shell.mesh.points), dtype=bool)
         nodes[self.shell.mesh.elements[elements]] = True
         nodes &= loose
-        if any(np.any(forces[nodes, 7:]) for forces in self.forces_at_rest):
+        pairs = [one for applied in self.applied for one in applied.pairs]
+        if any(one.row_field == "omega" and nodes[one.rows].any() for one in pairs):
             return "a moment"
-        pairs = [one.pairs for one in self.applied if one.pairs is not None and one.pairs.column_field == "omega"]
-        if any(nodes[one.columns].any() for one in pairs):
+        if any(one.column_field == "omega" and nodes[one.columns].any() for one in pairs):
             return "a follower"
         field = self.field.magnitude > 0.0 and not isinstance(self.coupling, DeformationGradientEnergy)
         if field and (len(self.shell.parts) == 1 or np.any(part.remanence)):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,14 +40,14 @@ class DeadForces:
         return True
 
     @property
-    def pairs(self) -> Pairs | None:
-        return None
+    def pairs(self) -> Sequence[Pairs]:
+        return ()
 
     def forces(self, state: State) -> FloatArray:
         """The same at every state."""
         forces = nodal("u", self.on_u)
         return forces if self.on_w is None else forces + nodal("w", self.on_w)
 
-    def stiffness(self, state: State) -> FloatArray:
+    def stiffness(self, state: State) -> list[FloatArray]:
         """None."""
-        return np.zeros((0, 3, 3))
+        return []

@@ -93,8 +93,8 @@ class _TurningForces:
         return np.flatnonzero(np.any(self.unrotated, axis=1))
 
     @property
-    def pairs(self) -> Pairs:
-        return Pairs("u", "omega", self._nodes, self._nodes)
+    def pairs(self) -> Sequence[Pairs]:
+        return (Pairs("u", "omega", self._nodes, self._nodes),)
 
     def _turned(self, state: State) -> FloatArray:
         return np.einsum("nij,nj->ni", rotation.matrix(state.q[: len(self.unrotated)]), self.unrotated)
@@ -103,6 +103,6 @@ class _TurningForces:
         """R̃ F on u."""
         return nodal("u", self._turned(state))
 
-    def stiffness(self, state: State) -> FloatArray:
+    def stiffness(self, state: State) -> list[FloatArray]:
         """[R̃ F]×."""
-        return cross_matrix(self._turned(state)[self._nodes])
+        return [cross_matrix(self._turned(state)[self._nodes])]

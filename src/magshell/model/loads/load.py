@@ -51,17 +51,18 @@ class Applied(Protocol):
         """Whether its work depends on the states at both ends only, whatever holds the shell."""
 
     @property
-    def pairs(self) -> Pairs | None:
-        """Where its tangent is; None: it has none."""
+    def pairs(self) -> Sequence[Pairs]:
+        """Where its tangent is; a dead load has none."""
 
     def forces(self, state: State) -> FloatArray:
         """Its forces (nodes, 11) in global axes: N on u, N m on w (which is a number), N m on the spin."""
 
-    def stiffness(self, state: State) -> FloatArray:
-        """Minus the derivative of the forces with respect to the increments at the pairs: (n, 3, 3), global axes.
+    def stiffness(self, state: State) -> Sequence[FloatArray]:
+        """Minus the derivative of the forces over the increments, for each of `pairs` (n, 3, 3), global axes.
 
-        Rotations move by spins ϑ, R̃ -> exp(ϑ) R̃, and couples are those on the spins of the new state: a dead couple
-        has no derivative. That elements differentiate otherwise is the equations' affair (`magshell.equations`).
+        Rotations move by spins ϑ, R̃ -> exp(ϑ) R̃, and couples are those on the spins of the new state: a constant
+        couple has no derivative. That elements differentiate otherwise is the equations' affair
+        (`magshell.equations`).
         """
 
 

@@ -1,17 +1,25 @@
-r"""A moment with a total over a group, on the micro-rotations or, without them, on the directors.
+r"""A moment with a total over a group, on the sections of its nodes.
 
-On the micro-rotation it is a couple c_I on the spin of node I, dead (its axis and magnitude stay) or turning with the
-node, c_I = R̃_I C_I, so that dc_I = ϑ × c_I: the tangent gets [c_I]×. Neither has a potential: over rotations about
-several axes, the work of a couple about an axis fixed in space or in the body depends on their order.
+A section turns with its director d = D + w, so that with δω the spin of the section δd = δω × d + (δ|d|) n, n = d/|d|.
+This leaves the drill n · δω open, which is the micro-rotation's. So a moment M at a node does the work
 
-A shell without micro-rotation turns with its director d = D + w: δd = δω × d leaves for the rotation, but for the drill
-about d itself, δω = d × δd / |d|², and the work of a moment M about an axis fixed in space is
+    M · δω = f · δw + c · δϑ,      f = M × d / |d|²,      c = (M · n) n,
 
-    M · δω = f · δw,   f = M × d / |d|²,   df/dd = [M]× (I - 2 n ⊗ n) / |d|²,   n = d/|d|.
+with the spin ϑ of the micro-rotation: what is normal to the director bends and twists the section by opposite forces on
+its two faces, what is along it turns the section in its plane. The torque of both is d × f + c = M, at any state.
+The derivatives are, with S = (I - 2 n ⊗ n) / |d|²,
 
-In bending (M normal to d) these are opposite forces on the two faces that turn with the section, through any number of
-turns. What M has along d does no work: a director does not feel its own drill. Shares of the nodes are taken without
-regard to that.
+    ∂f/∂d = [M]× S,      ∂c/∂d = d ⊗ M / |d|² + (M · d) S.
+
+M is dead (its axis and magnitude stay) or turns with the node, M = R̃ M_0, where dM = ϑ × M adds
+
+    ∂f/∂ϑ = [d]× [M]× / |d|²,      ∂c/∂ϑ = -n ⊗ n [M]×.
+
+Neither has a potential: over rotations about several axes, the work of a moment about an axis fixed in space or in the
+body depends on their order.
+
+A shell without micro-rotation has f alone: its directors do not feel a drill. A moment along them is refused; what
+comes along them as the shell deforms is without effect.
 """
 
 from __future__ import annotations
@@ -38,10 +46,16 @@ from magshell.shell import rotation
 from magshell.shell.state import State
 from magshell.units import MOMENT, Dimension
 
+# Sine of the angle from a plane below which a moment is in it: normals are known to the rounding of files.
+IN_PLANE = 1e-4
+
 
 @dataclass(frozen=True, eq=False)
 class Moment(TotalLoad):
-    """A moment on the micro-rotations of a group; on the directors where the shell has no micro-rotation.
+    """A moment on the sections of a group.
+
+    What it has normal to a director works on that, what it has along it on the micro-rotation. A shell without
+    micro-rotation takes moments in its surface only.
 
     Parameters
     ----------
@@ -79,79 +93,114 @@ class Moment(TotalLoad):
                     "a follower turns with the micro-rotation, which this shell does not have; leave follower out: "
                     "the moment then works on the director, about an axis fixed in space"
                 )
-            parts = shares(shell, self.group, "omega" if shell.micro_rotation else "w")
-            moments = parts[:, None] * vector("total", self.total)
-        if not shell.micro_rotation:
-            return _DirectorMoments(moments, rows.normals[: len(moments)])
-        return _TurningCouples(moments) if self.follower else _DeadCouples(moments)
+            total = vector("total", self.total)
+            moments = shares(shell, self.group, "w")[:, None] * total
+            nodes, normals = np.flatnonzero(np.any(moments, axis=1)), rows.normals[: len(moments)]
+            if not shell.micro_rotation:
+                _check_no_drill(shell, nodes, normals[nodes], total)
+                return _DirectorMoments(nodes, moments[nodes], normals)
+        return (_TurningMoments if self.follower else _SectionMoments)(nodes, moments[nodes], normals)
 
     def size(self, forces: FloatArray) -> Size:
         """Its total."""
         return Size(moment=float(np.linalg.norm(self.value)))
 
 
-@dataclass(frozen=True, eq=False)
-class _Moments:
-    """Moments (nodes, 3), N m; those that turn, of the unrotated nodes."""
+def _check_no_drill(shell: Shell, nodes: IntArray, normals: FloatArray, total: FloatArray) -> None:
+    """Refuse a moment that has a part along the director of one of its nodes."""
+    along = np.abs(normals @ total) / np.linalg.norm(total)
+    worst = int(np.argmax(along))
+    if along[worst] > IN_PLANE:
+        place = ", ".join(f"{1e3 * x:.4g}" for x in shell.mesh.points[nodes[worst]])
+        raise InputError(
+            f"{along[worst]:.3g} of it is along the normal at node {nodes[worst]} at ({place}) mm, and without "
+            "micro-rotation nothing resists a turn about the normal; leave out micro_rotation = false, or let forces "
+            "on parts of the group make up this moment"
+        )
 
+
+@dataclass(frozen=True, eq=False)
+class _DirectorMoments:
+    """Moments (n, 3) of some nodes, N m, those that turn of the unrotated nodes; unit normals of all (nodes, 3)."""
+
+    nodes: IntArray
     moments: FloatArray
+    normals: FloatArray
 
     @property
     def conservative(self) -> bool:
         return False
 
     @property
-    def _nodes(self) -> IntArray:
-        return np.flatnonzero(np.any(self.moments, axis=1))
+    def pairs(self) -> Sequence[Pairs]:
+        return (Pairs("w", "w", self.nodes, self.nodes),)
 
-
-class _DeadCouples(_Moments):
-    @property
-    def pairs(self) -> Pairs | None:
-        return None
+    def acting(self, state: State) -> tuple[FloatArray, FloatArray]:
+        """Moments and directors (n, 3)."""
+        return self.moments, self.normals[self.nodes] + state.w[self.nodes]
 
     def forces(self, state: State) -> FloatArray:
-        """The same at every state."""
-        return nodal("omega", self.moments)
+        """Forces f on w."""
+        M, d = self.acting(state)
+        return self._nodal("w", rotation.cross(M, d) / _square(d))
 
-    def stiffness(self, state: State) -> FloatArray:
-        """None."""
-        return np.zeros((0, 3, 3))
+    def stiffness(self, state: State) -> list[FloatArray]:
+        """That of f over w."""
+        M, d = self.acting(state)
+        return [-cross_matrix(M) @ _mirror(d)]
+
+    def _nodal(self, field: str, vectors: FloatArray) -> FloatArray:
+        whole = np.zeros_like(self.normals)
+        whole[self.nodes] = vectors
+        return nodal(field, whole)
 
 
-class _TurningCouples(_Moments):
+class _SectionMoments(_DirectorMoments):
     @property
-    def pairs(self) -> Pairs:
-        return Pairs("omega", "omega", self._nodes, self._nodes)
-
-    def _turned(self, state: State) -> FloatArray:
-        return np.einsum("nij,nj->ni", rotation.matrix(state.q[: len(self.moments)]), self.moments)
+    def pairs(self) -> Sequence[Pairs]:
+        return (*super().pairs, Pairs("omega", "w", self.nodes, self.nodes))
 
     def forces(self, state: State) -> FloatArray:
-        """c = R̃ C on the spin."""
-        return nodal("omega", self._turned(state))
+        """Forces f on w, couples c on the spin."""
+        M, d = self.acting(state)
+        drill = np.sum(M * d, axis=1, keepdims=True) / _square(d) * d
+        return super().forces(state) + self._nodal("omega", drill)
 
-    def stiffness(self, state: State) -> FloatArray:
-        """[c]×."""
-        return cross_matrix(self._turned(state)[self._nodes])
+    def stiffness(self, state: State) -> list[FloatArray]:
+        """Also that of c over w."""
+        M, d = self.acting(state)
+        along = np.sum(M * d, axis=1)[:, None, None]
+        return [*super().stiffness(state), -_dyad(d, M) / _square(d)[..., None] - along * _mirror(d)]
 
 
-@dataclass(frozen=True, eq=False)
-class _DirectorMoments(_Moments):
-    normals: FloatArray
-
+class _TurningMoments(_SectionMoments):
     @property
-    def pairs(self) -> Pairs:
-        return Pairs("w", "w", self._nodes, self._nodes)
+    def pairs(self) -> Sequence[Pairs]:
+        spins = (Pairs(field, "omega", self.nodes, self.nodes) for field in ("w", "omega"))
+        return (*super().pairs, *spins)
 
-    def forces(self, state: State) -> FloatArray:
-        """M × d / |d|² on w."""
-        d = self.normals + state.w[: len(self.normals)]
-        return nodal("w", rotation.cross(self.moments, d) / np.sum(d * d, axis=1, keepdims=True))
+    def acting(self, state: State) -> tuple[FloatArray, FloatArray]:
+        """With M = R̃ M_0."""
+        M, d = super().acting(state)
+        return np.einsum("nij,nj->ni", rotation.matrix(state.q[self.nodes]), M), d
 
-    def stiffness(self, state: State) -> FloatArray:
-        """-[M]× (I - 2 n ⊗ n) / |d|²."""
-        d = self.normals[self._nodes] + state.w[self._nodes]
-        square = np.sum(d * d, axis=1)[:, None, None]
-        reflection = np.eye(3) - 2.0 * d[:, :, None] * d[:, None, :] / square
-        return -cross_matrix(self.moments[self._nodes]) @ reflection / square
+    def stiffness(self, state: State) -> list[FloatArray]:
+        """Also those of f and c over spins."""
+        M, d = self.acting(state)
+        turning = cross_matrix(M) / _square(d)[..., None]
+        return [*super().stiffness(state), -cross_matrix(d) @ turning, _dyad(d, d) @ turning]
+
+
+def _square(d: FloatArray) -> FloatArray:
+    """|d|² (n, 1)."""
+    return np.sum(d * d, axis=1, keepdims=True)
+
+
+def _dyad(a: FloatArray, b: FloatArray) -> FloatArray:
+    return a[:, :, None] * b[:, None, :]
+
+
+def _mirror(d: FloatArray) -> FloatArray:
+    """S = (I - 2 n ⊗ n) / |d|² (n, 3, 3)."""
+    square = _square(d)[..., None]
+    return (np.eye(3) - 2.0 * _dyad(d, d) / square) / square

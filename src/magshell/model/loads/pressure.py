@@ -119,8 +119,8 @@ class _Pressing:
     conservative: bool
 
     @property
-    def pairs(self) -> Pairs:
-        return Pairs("u", "u", np.repeat(self.elements, 8, axis=1).ravel(), np.tile(self.elements, 8).ravel())
+    def pairs(self) -> Sequence[Pairs]:
+        return (Pairs("u", "u", np.repeat(self.elements, 8, axis=1).ravel(), np.tile(self.elements, 8).ravel()),)
 
     def _base(self, state: State) -> tuple[FloatArray, FloatArray]:
         """a_1 and a_2 (e, p, 3)."""
@@ -135,10 +135,10 @@ class _Pressing:
         np.add.at(on_u, self.elements, np.swapaxes(self.weighted, 1, 2) @ rotation.cross(a_1, a_2))
         return nodal("u", on_u)
 
-    def stiffness(self, state: State) -> FloatArray:
+    def stiffness(self, state: State) -> list[FloatArray]:
         """K_IJ, J fastest."""
         a_1, a_2 = self._base(state)
         N_1, N_2 = self.derivatives[:, :, 0, :, None], self.derivatives[:, :, 1, :, None]
         arms = N_1 * a_2[:, :, None] - N_2 * a_1[:, :, None]
         vectors = np.swapaxes(self.weighted, 1, 2) @ arms.reshape(*arms.shape[:2], -1)
-        return cross_matrix(vectors.reshape(-1, 3))
+        return [cross_matrix(vectors.reshape(-1, 3))]
