@@ -207,8 +207,8 @@ class Discretisation:
         units = np.array([self._unit(column) for column in range(COMPONENTS)])
         magnitudes = np.abs(increment.nodal) / units
         node, column = np.unravel_index(np.argmax(magnitudes), magnitudes.shape)
-        position = ", ".join(f"{1e3 * x:.4g}" for x in self.mesh.points[self.rows.of[node]])
-        return float(magnitudes[node, column]), f"{UNKNOWNS[column]} of node {self.rows.of[node]} at ({position}) mm"
+        position = ", ".join(f"{1e3 * x:.4g}" for x in self.rows.points[node])
+        return float(magnitudes[node, column]), f"{UNKNOWNS[column]} of {self.rows.words(int(node))} at ({position}) mm"
 
     def _unit(self, column: int) -> float:
         if column < COLUMNS["u"].stop:

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
-from magshell.equations.dependence import Dependence, Levers
-from magshell.equations.frames import to_frames
+from magshell.equations.dependence import Dependence
+from magshell.equations.frames import to_frames, to_global
 from magshell.equations.insertion import Insertion
 from magshell.equations.instant import Increment, Instant, Prediction, Weights
 from magshell.equations.nodal import NodalBlocks
@@ -71,25 +71,32 @@ class LoadTerm:
         """See `Term`."""
         forces = self.forces(instant.state, instant.loading.loads)
         levers = self._dependence.levers(instant.state)
+        residual = condensed = -to_frames(self._constraints, self._dependence.gathered(forces, levers))
         if insertion is not None and self._applied:
-            self._insert(instant, weights, insertion, forces, levers)
-        residual = -to_frames(self._constraints, self._dependence.gathered(forces, levers))
-        return Contribution(residual, residual, squares_by_kind(residual), 0.0)
+            blocks = self._blocks(instant)
+            self._places.insert(weights.displacement, forces, blocks, levers)
+            self._transport(weights, insertion, forces)
+            if imposed is not None:
+                given = to_global(self._constraints, imposed)
+                moving = weights.displacement * self._places.product(given, forces, blocks, levers)
+                condensed = residual + to_frames(self._constraints, moving)
+        return Contribution(residual, condensed, squares_by_kind(residual), 0.0)
 
-    def _insert(
-        self, instant: Instant, weights: Weights, insertion: Insertion, forces: FloatArray, levers: Levers
-    ) -> None:
-        """Add minus the derivative of the forces, and a transport of the couples.
-
-        Elements differentiate in the chart exp(ϑ) R̃, in which a couple c on the spins of the new state is
-        c + c × ϑ / 2: so K = K_chart - [c]×/2, with the sum c of the couples of a node's elements. In equilibrium c is
-        the loads' couple where no rotation is held. Where exactly one is, the loops over elements have all of c, loads
-        and reaction; where more are, [c]× does not meet two free rotations.
-        """
+    def _blocks(self, instant: Instant) -> list[FloatArray | None]:
+        """Minus the derivatives of the forces, at all pairs of all loads."""
         blocks: list[FloatArray | None] = []
         for amplitude, one, own in zip(instant.loading.loads, self._applied, self._pairs, strict=True):
             blocks += [amplitude * block for block in one.stiffness(instant.state)] if amplitude else [None] * len(own)
-        self._places.insert(weights.displacement, forces, blocks, levers)
+        return blocks
+
+    def _transport(self, weights: Weights, insertion: Insertion, forces: FloatArray) -> None:
+        """Add a transport of the couples.
+
+        Elements differentiate in the chart exp(ϑ) R̃, in which a couple c on the spins of the new state is
+        c + c × ϑ / 2: so K = K_chart - [c]×/2, with the sum c of the couples of a node's elements. In equilibrium c is
+        the loads' couple where no rotation is held. Where some are, the loops over elements have all of c, loads and
+        reaction; where all are, [c]× meets no free rotation.
+        """
         if self._couples.rows.size:
             couples = forces[self._couples.rows, COLUMNS["omega"]]
             insertion.add_blocks(self._couples, self._couples_at, -0.5 * weights.displacement * cross_matrix(couples))

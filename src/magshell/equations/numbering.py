@@ -38,7 +38,8 @@ class Numbering:
         Equation minus the first one of its place.
     place : ndarray, shape (rows, 11)
         Mesh node or rigid body at which each unknown is.
-    one_rotation_held : ndarray of bool, shape (rows,)
+    partly_held : ndarray of bool, shape (rows,)
+        Where one or two of the three rotations are held.
     indptr, indices : ndarray
         Of the tangent, compressed columns.
     """
@@ -55,7 +56,7 @@ class Numbering:
         rank -= (np.cumsum(counts) - counts)[rows.of][:, None]
         self.place, self.rank = rows.place, rows.shared(rank)
         self.number = rows.shared(np.where(free, first[rows.of][:, None] + rank, -1))
-        self.one_rotation_held: AnyArray = np.sum(self.number[:, COLUMNS["omega"]] < 0, axis=1) == 1
+        self.partly_held: AnyArray = np.isin(np.sum(self.number[:, COLUMNS["omega"]] < 0, axis=1), (1, 2))
         self.equations = self.number[free]
         self.dofs = int(counts.sum())
         self._set_pattern(graph, order, counts)

@@ -67,7 +67,7 @@ class ShellTerm:
         """Tell the term where its values go."""
         self._to: Destination = destination(self.elements, numbering)
         self._constraints = constraints
-        self._transported: AnyArray = numbering.one_rotation_held
+        self._transported: AnyArray = numbering.partly_held
 
     def couplings(self) -> Sequence[IntArray]:
         """See `Term`."""

@@ -95,6 +95,11 @@ class Rows(NamedTuple):
             carriers[field][self.of[self.carried[:, COLUMNS[field].start]]] = True
         return carriers
 
+    def words(self, row: int) -> str:
+        """The node or the rigid body of a row in messages."""
+        place = int(self.of[row])
+        return f"node {place}" if place < self.nodes else f"rigid body {place - self.nodes + 1}"
+
     def shared(self, nodal: Columns) -> Columns:
         """Nodal columns (rows, 11) whose shared ones are those of their source."""
         if not self.plain:

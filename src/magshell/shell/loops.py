@@ -117,7 +117,7 @@ def _add_spin_transport(r: FloatArray, layout: Layout, n: int, Kt: FloatArray) -
     """K -= [r]×/2 on a node's spins: from the chart exp(ϑ) R̃ to the spins of the new state.
 
     The node's couples add up to its reaction, which vanishes unless a rotation is held, and does not meet free
-    rotations unless exactly one is.
+    rotations if all are.
     """
     for i in range(3):
         j, k = layout.at_q + NEXT[i] * layout.q + n, layout.at_q + LAST[i] * layout.q + n
