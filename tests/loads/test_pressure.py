@@ -151,7 +151,8 @@ def skew_part(mesh, load, state):
     """Largest entry of K - Kᵀ for each pair of nodes, over the largest of K: (nodes, nodes)."""
     count = len(mesh.points)
     K = np.zeros((count, count, 3, 3))
-    np.add.at(K, (load.pairs.rows, load.pairs.columns), load.stiffness(state))
+    (pairs,), (blocks,) = load.pairs, load.stiffness(state)
+    np.add.at(K, (pairs.rows, pairs.columns), blocks)
     skew = K - K.transpose(1, 0, 3, 2)
     return np.abs(skew).max(axis=(2, 3)) / np.abs(K).max()
 

@@ -72,8 +72,8 @@ HELD = {
 
 @pytest.mark.parametrize("follower", [False, True], ids=["dead", "turning"])
 @pytest.mark.parametrize("held", HELD.values(), ids=HELD)
-def test_tangent_of_the_rotations_under_a_couple(held: list[object], follower: bool) -> None:
-    """Columns of the tangent against central differences in equilibrium, scaled by the diagonal."""
+def test_tangent_of_sections_under_a_moment(held: list[object], follower: bool) -> None:
+    """Columns of directors and spins against central differences in equilibrium, scaled by the diagonal."""
     mesh = grouped(ms.mesh.rectangle(LENGTH, 5e-3, (4, 1)))
     shell = ms.Shell(mesh, THICKNESS, rubber())
     loads = [ms.Moment("right", (2e-5, -3e-5, 2e-5), follower), ms.Force("top", (0, 1e-3, 2e-3), follower)]
@@ -86,15 +86,33 @@ def test_tangent_of_the_rotations_under_a_couple(held: list[object], follower: b
     matrix = discretisation.assemble(Instant(state, model.loading(1.0))).matrix.toarray()
     scale = np.sqrt(np.abs(matrix.diagonal()))
     equations = equation_numbers(discretisation)[tip]
-    rotations = equations[7:10][equations[7:10] >= 0]
-    assert rotations.size == 3 - np.count_nonzero(model.constraints.fixed[tip, 7:10])
-    for equation in rotations:
+    turning = equations[[3, 4, 5, 7, 8, 9]]
+    assert np.count_nonzero(turning >= 0) == 6 - np.count_nonzero(model.constraints.fixed[tip, 7:10])
+    for equation in turning[turning >= 0]:
         unit = np.zeros(discretisation.dofs)
         unit[equation] = step
         increment = discretisation.direction(unit).nodal
         numeric = central_difference(discretisation, state, increment, step)
         off = np.abs(numeric - matrix[:, equation]) / (scale * scale[equation])
         assert off.max() < 1e-6, f"equation {equation}: {off.max():.1e} in equation {off.argmax()}"
+
+
+@pytest.mark.parametrize("held", [one for one in HELD.values() if one], ids=[name for name, one in HELD.items() if one])
+def test_rotations_that_are_turned_take_the_loads_along(held: list[object]) -> None:
+    """What the right side has of imposed rotations, against differences: followers turn with them."""
+    mesh = grouped(ms.mesh.rectangle(LENGTH, 5e-3, (4, 1)))
+    loads = [ms.Moment("right", (2e-5, -3e-5, 2e-5), True), ms.Force("right", (0, 1e-3, 2e-3), True)]
+    model = ms.Model(ms.Shell(mesh, THICKNESS, rubber()), [ms.Clamp("left"), *held], loads=loads)
+    path = solve(model, Settings(tolerance=SHARP))
+    discretisation, state, step = path.discretisation, path.steps[-1].state, 1e-6
+    turned = np.zeros_like(discretisation.free, dtype=float)
+    turned[mesh.nodes_of("right"), 7:10] = np.random.default_rng(1).uniform(-1, 1, (len(mesh.nodes_of("right")), 3))
+    imposed = discretisation.imposed(turned)
+    at = Instant(state, model.loading(1.0))
+    found = discretisation.assemble(at).right_side - discretisation.assemble(at, imposed).right_side
+    numeric = central_difference(discretisation, state, step * discretisation.to_global(imposed), step)
+    off = np.abs(numeric - found).max() / np.abs(numeric).max()
+    assert off < 1e-7, f"{off:.1e}"
 
 
 class Recording(Discretisation):

@@ -93,9 +93,9 @@ class Moment(TotalLoad):
                     "a follower turns with the micro-rotation, which this shell does not have; leave follower out: "
                     "the moment then works on the director, about an axis fixed in space"
                 )
-            total = vector("total", self.total)
+            total, normals = vector("total", self.total), rows.normals[: rows.nodes]
             moments = shares(shell, self.group, "w")[:, None] * total
-            nodes, normals = np.flatnonzero(np.any(moments, axis=1)), rows.normals[: len(moments)]
+            nodes = np.flatnonzero(np.any(moments, axis=1))
             if not shell.micro_rotation:
                 _check_no_drill(shell, nodes, normals[nodes], total)
                 return _DirectorMoments(nodes, moments[nodes], normals)
@@ -121,7 +121,7 @@ def _check_no_drill(shell: Shell, nodes: IntArray, normals: FloatArray, total: F
 
 @dataclass(frozen=True, eq=False)
 class _DirectorMoments:
-    """Moments (n, 3) of some nodes, N m, those that turn of the unrotated nodes; unit normals of all (nodes, 3)."""
+    """Moments (n, 3) of some nodes, N m, those that turn of the unrotated nodes; unit normals (nodes, 3) of all."""
 
     nodes: IntArray
     moments: FloatArray
