@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from magshell.model.model import Model
     from magshell.model.region import Layer, Region
     from magshell.model.shell import Shell
+    from magshell.model.springs import Spring
     from magshell.model.stages import Stage
     from magshell.model.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane
     from magshell.solver import CriticalPoint, Observer, Path, Settings, SolveError, Step, resume, solve
@@ -60,6 +61,7 @@ _HOME = {
     "magshell.model.shell": ("Shell",),
     "magshell.solver": ("CriticalPoint", "Observer", "Path", "Settings", "SolveError", "Step", "resume", "solve"),
     "magshell.solver.buckling": ("Buckling", "BucklingMode", "buckling"),
+    "magshell.model.springs": ("Spring",),
     "magshell.model.stages": ("Stage",),
     "magshell.model.supports": ("Clamp", "Prescribe", "SimpleSupport", "SymmetryPlane"),
 }
@@ -101,6 +103,7 @@ __all__ = [
     "Shell",
     "SimpleSupport",
     "SolveError",
+    "Spring",
     "Stage",
     "Step",
     "SymmetryPlane",

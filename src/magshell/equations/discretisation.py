@@ -17,6 +17,7 @@ from magshell.equations.instant import STATIC, Increment, Instant, Prediction
 from magshell.equations.loads import LoadTerm
 from magshell.equations.numbering import Numbering, Ordering
 from magshell.equations.shell import ShellTerm
+from magshell.equations.springs import SpringTerm
 from magshell.equations.term import Term, squares_by_kind
 from magshell.model.course import Loading
 from magshell.model.model import Model
@@ -72,6 +73,7 @@ class Discretisation:
         Free unknowns.
     shell : ShellTerm
     loads : LoadTerm
+    springs : SpringTerm
     terms : sequence of Term
         Those that there are.
     reference : Reference
@@ -92,7 +94,9 @@ class Discretisation:
         self.couplings = make.couplings
         self.shell = ShellTerm(self.reference, len(self.rows.of), stiffest_of(make))
         self.loads = LoadTerm(model.applied, model.constraints)
-        self.terms: Sequence[Term] = (self.shell, self.loads) if model.applied else (self.shell,)
+        self.springs = SpringTerm(model.elastic, model.constraints)
+        used = ((self.loads, model.applied), (self.springs, model.elastic))
+        self.terms: Sequence[Term] = (self.shell, *(term for term, users in used if users))
         self.carried = self.rows.carried
         self.free = self.carried & ~model.constraints.fixed
         cliques = [clique for term in self.terms for clique in term.couplings()]
@@ -103,6 +107,7 @@ class Discretisation:
         self._insertion = Insertion(self.numbering, model.constraints)
         self.shell.place(self.numbering, model.constraints)
         self.loads.place(self._insertion, self.dependence)
+        self.springs.place(self._insertion, self.dependence)
         self._noise = _sum(term.noise() for term in self.terms)
 
     @property

@@ -65,11 +65,15 @@ class LoadTerm:
                 total[: len(forces)] += amplitude * forces
         return total
 
+    def _amplitudes(self, loading: Loading) -> FloatArray:
+        """Multiplier of each."""
+        return loading.loads
+
     def evaluate(
         self, instant: Instant, weights: Weights, insertion: Insertion | None, imposed: FloatArray | None
     ) -> Contribution:
         """See `Term`."""
-        forces = self.forces(instant.state, instant.loading.loads)
+        forces = self.forces(instant.state, self._amplitudes(instant.loading))
         levers = self._dependence.levers(instant.state)
         residual = condensed = -to_frames(self._constraints, self._dependence.gathered(forces, levers))
         if insertion is not None and self._applied:
@@ -85,7 +89,7 @@ class LoadTerm:
     def _blocks(self, instant: Instant) -> list[FloatArray | None]:
         """Minus the derivatives of the forces, at all pairs of all loads."""
         blocks: list[FloatArray | None] = []
-        for amplitude, one, own in zip(instant.loading.loads, self._applied, self._pairs, strict=True):
+        for amplitude, one, own in zip(self._amplitudes(instant.loading), self._applied, self._pairs, strict=True):
             blocks += [amplitude * block for block in one.stiffness(instant.state)] if amplitude else [None] * len(own)
         return blocks
 

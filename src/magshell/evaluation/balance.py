@@ -29,7 +29,7 @@ class Balance(NamedTuple):
     Attributes
     ----------
     reaction_force : ndarray, shape (3,)
-        N.
+        Of supports and springs, N.
     reaction_moment : ndarray, shape (3,)
         About the origin, N m.
     magnetic_torque : ndarray, shape (3,)
@@ -90,7 +90,7 @@ def balance(discretisation: Discretisation, state: State, loading: Loading, resi
     residual : ndarray, shape (rows, 11)
         Of that state, in the nodes' frames: at held components what the supports exert.
     """
-    reaction = held_forces(discretisation, residual)
+    reaction = held_forces(discretisation, residual) + sum(discretisation.springs.each(state))
     load = discretisation.loads.forces(state, loading.loads)
     position = discretisation.rows.points + state.u
     director = discretisation.rows.normals + state.w

@@ -68,9 +68,14 @@ class Converged:
         """Forces of all supports on the unknowns of the rows (rows, 11), global axes."""
         return held_forces(self.discretisation, self.assembly.residual)
 
+    @property
+    def spring_energy(self) -> float:
+        """Energy of all springs, J."""
+        return self.discretisation.springs.energy(self.state)
+
     @cached_property
     def reactions(self) -> list[Reaction]:
-        """Force and moment of each named support."""
+        """Force and moment of each named support, then of each spring."""
         return reactions(self.discretisation, self.state, self.support_forces)
 
     @cached_property

@@ -1,4 +1,4 @@
-r"""Reactions: force and moment that each named support exerts on the shell.
+r"""Reactions: force and moment that each named support, and each spring, exerts on the shell.
 
 A rigid rotation δθ of the support about a point c moves what it holds by
 
@@ -20,6 +20,7 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.equations.discretisation import Discretisation
+from magshell.model.springs import reaction_name
 from magshell.shell.rotation import cross
 from magshell.shell.state import State
 from magshell.shell.unknowns import COLUMNS
@@ -51,7 +52,7 @@ def held_forces(discretisation: Discretisation, residual: FloatArray) -> FloatAr
 
 
 def reactions(discretisation: Discretisation, state: State, forces: FloatArray) -> list[Reaction]:
-    """The reaction of each named support, from the forces of all supports (rows, 11), global axes."""
+    """The reaction of each named support, from the forces of all supports (rows, 11), global axes; and of springs."""
     x, d = discretisation.rows.points + state.u, discretisation.rows.normals + state.w
     found = []
     for support in discretisation.model.named_supports:
@@ -62,4 +63,9 @@ def reactions(discretisation: Discretisation, state: State, forces: FloatArray) 
         point = support.weights @ x[: len(support.weights)] if support.point is None else support.point
         moment = (cross(x[at] - point, f_u) + cross(d[at], f_w) + f_ω).sum(axis=0)
         found.append(Reaction(support.name, point, f_u.sum(axis=0), moment))
+    model = discretisation.model
+    for spring, elastic, one in zip(model.springs, model.elastic, discretisation.springs.each(state), strict=True):
+        point = elastic.weights @ x[: len(elastic.weights)] if spring.about is None else spring.about
+        moments = cross(x - point, one[:, COLUMNS["u"]]) + cross(d, one[:, COLUMNS["w"]]) + one[:, COLUMNS["omega"]]
+        found.append(Reaction(reaction_name(spring), point, one[:, COLUMNS["u"]].sum(axis=0), moments.sum(axis=0)))
     return found

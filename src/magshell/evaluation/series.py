@@ -46,7 +46,7 @@ class Series:
 
 
 def _of_supports(letter: str) -> Callable[[Model], Sequence[str]]:
-    return lambda model: [f"{support.name}.{letter}{i}" for support in model.named_supports for i in (1, 2, 3)]
+    return lambda model: [f"{name}.{letter}{i}" for name in model.reactions for i in (1, 2, 3)]
 
 
 def _magnetic(converged: Converged) -> Number:
@@ -72,7 +72,7 @@ SERIES: dict[str, Series] = {
         Series(
             "reaction force",
             "N",
-            "Force that a support exerts on the shell: `NAME.R1`, `R2`, `R3`.",
+            "Force that a support or spring exerts on the shell: `NAME.R1`, `R2`, `R3`.",
             _of_supports("R"),
             lambda converged: [float(number) for one in converged.reactions for number in one.force],
         ),
@@ -114,6 +114,13 @@ SERIES: dict[str, Series] = {
             lambda model: maxima.place_columns(),
             maxima.places,
             curves=False,
+        ),
+        Series(
+            "energy of springs",
+            "J",
+            "Energy of all springs (`springs`), if there are any.",
+            lambda model: ["springs"] if model.springs else [],
+            lambda converged: [converged.spring_energy] if converged.discretisation.model.springs else [],
         ),
     )
 }

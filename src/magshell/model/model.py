@@ -28,6 +28,7 @@ from magshell.model.rigid import check_supported
 from magshell.model.rigid_body import RigidBody
 from magshell.model.rows import Rows, rows_of
 from magshell.model.shell import Shell
+from magshell.model.springs import Elastic, Spring, check_names, reaction_name
 from magshell.model.stages import Stage
 from magshell.model.supports import Constraints, Support, SymmetryPlane, resolve
 from magshell.multipliers import amplitudes
@@ -63,6 +64,8 @@ class Model:
         Outputs of `magshell.evaluation.outputs` that files and pages hold beside those that they always do.
     rigid : sequence of RigidBody, optional
         Groups of the shell that move as rigid bodies.
+    springs : sequence of Spring, optional
+        Elastic supports.
 
     Attributes
     ----------
@@ -72,6 +75,8 @@ class Model:
         The supports, row by row.
     applied : tuple of Applied
         The loads, node by node.
+    elastic : tuple of Elastic
+        The springs, node by node.
     probe_nodes : mapping of str to int
     named_supports : tuple of NamedSupport
         The supports by the names of their reactions.
@@ -93,9 +98,11 @@ class Model:
     local_axis: ArrayLike = (1.0, 0.0, 0.0)
     outputs: Sequence[str] = ()
     rigid: Sequence[RigidBody] = ()
+    springs: Sequence[Spring] = ()
     rows: Rows = dataclasses.field(init=False, repr=False)
     constraints: Constraints = dataclasses.field(init=False, repr=False)
     applied: tuple[Applied, ...] = dataclasses.field(init=False, repr=False)
+    elastic: tuple[Elastic, ...] = dataclasses.field(init=False, repr=False)
     probe_nodes: Mapping[str, int] = dataclasses.field(init=False, repr=False)
     named_supports: tuple[NamedSupport, ...] = dataclasses.field(init=False, repr=False)
     _ends: tuple[Amounts, ...] = dataclasses.field(init=False, repr=False)
@@ -117,6 +124,9 @@ class Model:
         constraints = resolve(places, self.supports, len(self.stages))
         put(self, "constraints", self.rows.constraints(constraints))
         put(self, "named_supports", named_supports(self.shell, places, self.supports))
+        put(self, "springs", tuple(self.springs))
+        put(self, "elastic", tuple(spring.applied(self.shell, places) for spring in self.springs))
+        check_names(self.springs, [support.name for support in self.named_supports])
         put(self, "applied", tuple(load.applied(self.shell, self.rows) for load in self.loads))
         nodes = {}
         for name, position in self.probes.items():
@@ -127,7 +137,7 @@ class Model:
         put(self, "probe_nodes", MappingProxyType(nodes))
         put(self, "_ends", self._amounts_at_the_ends())
         self._check_targets()
-        check_supported(places, self.rows.normals[: places.number], constraints)
+        check_supported(places, self.rows.normals[: places.number], constraints, self.elastic)
         self._check_the_micro_rotation_matters()
         self._check_something_loads()
         for fault in symmetry.broken(self):
@@ -136,7 +146,7 @@ class Model:
             coupling_limit.logger.warning("%s", fault)
 
     def __repr__(self) -> str:
-        parts = (self.shell, self.field, self.coupling, *self.loads, *self.supports)
+        parts = (self.shell, self.field, self.coupling, *self.loads, *self.supports, *self.springs)
         return "\n  ".join([f"Model({len(self.stages)} stages, {len(self.probes)} probes)", *map(repr, parts)])
 
     def _repr_html_(self) -> str:
@@ -212,6 +222,11 @@ class Model:
             The shell has no density.
         """
         return whole_mass(self.shell, self.rows)
+
+    @property
+    def reactions(self) -> tuple[str, ...]:
+        """Names of the reactions: of supports, then of springs."""
+        return (*(support.name for support in self.named_supports), *map(reaction_name, self.springs))
 
     @property
     def largest_field(self) -> float:

@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.model.places import Places
+from magshell.model.springs import Elastic
 from magshell.model.supports import Constraints
+from magshell.shell.state import State
 
 
-def free_motions(points: FloatArray, normals: FloatArray, nodes: IntArray, constraints: Constraints) -> FloatArray:
-    """Basis (motions, 6) of the rigid motions of some nodes that no support resists.
+def free_motions(
+    points: FloatArray,
+    normals: FloatArray,
+    nodes: IntArray,
+    constraints: Constraints,
+    springs: Sequence[Elastic] = (),
+) -> FloatArray:
+    """Basis (motions, 6) of the rigid motions of some nodes that no support or spring resists.
 
     Columns: translation, then rotation about the nodes' centre (times their size, so that all have one unit).
     """
@@ -31,8 +41,28 @@ def free_motions(points: FloatArray, normals: FloatArray, nodes: IntArray, const
         turned[oblique] = constraints.frames[frame[oblique]] @ motion[oblique]
         rows.append(turned[constraints.fixed[nodes, column : column + 3]])
     matrix = np.concatenate([*rows, np.zeros((6, 6))])
-    _, singular, basis = np.linalg.svd(matrix.T @ matrix)
+    resisted = matrix.T @ matrix
+    for spring in springs:
+        resisted = resisted + _resisted(spring, nodes, {"u": u, "w": w, "omega": ω})
+    _, singular, basis = np.linalg.svd(resisted)
     return np.asarray(basis[singular < 1e-12 * max(float(singular[0]), 1.0)])
+
+
+def _resisted(spring: Elastic, nodes: IntArray, motions: Mapping[str, FloatArray]) -> FloatArray:
+    """Second derivative (6, 6) of a spring's energy by the rigid motions of some nodes, of a norm of the order of one.
+
+    Springs that hold other nodes too count with what they do between these.
+    """
+    total, size = np.zeros((6, 6)), 0.0
+    at_rest = State.undeformed(int(max(one.rows.max(initial=0) for one in spring.pairs)) + 1, 0, 0)
+    for pairs, blocks in zip(spring.pairs, spring.stiffness(at_rest), strict=True):
+        row, column = np.searchsorted(nodes, pairs.rows), np.searchsorted(nodes, pairs.columns)
+        row, column = np.minimum(row, len(nodes) - 1), np.minimum(column, len(nodes) - 1)
+        here = (nodes[row] == pairs.rows) & (nodes[column] == pairs.columns)
+        left, right = motions[pairs.row_field][row[here]], motions[pairs.column_field][column[here]]
+        total += np.einsum("nia,nij,njb->ab", left, blocks[here], right)
+        size += float(np.abs(blocks).sum())
+    return total / size
 
 
 def _cross(vectors: FloatArray) -> FloatArray:
@@ -42,7 +72,9 @@ def _cross(vectors: FloatArray) -> FloatArray:
     return np.stack([np.stack(row, axis=-1) for row in ((zero, -z, y), (z, zero, -x), (-y, x, zero))], axis=-2)
 
 
-def check_supported(places: Places, normals: FloatArray, constraints: Constraints) -> None:
+def check_supported(
+    places: Places, normals: FloatArray, constraints: Constraints, springs: Sequence[Elastic] = ()
+) -> None:
     """Raise an InputError that names the free rigid motion of a part that can still move.
 
     `normals` are those of the places (places, 3), zero for rigid bodies.
@@ -52,7 +84,7 @@ def check_supported(places: Places, normals: FloatArray, constraints: Constraint
         nodes = np.unique(mesh.elements[elements])
         bodies = places.owner[nodes]
         nodes = np.append(nodes, np.unique(bodies[bodies >= 0]))
-        motions = free_motions(places.points, normals, nodes, constraints)
+        motions = free_motions(places.points, normals, nodes, constraints, springs)
         if len(motions) == 0:
             continue
         which = "the body" if len(parts) == 1 else f"part {number + 1} of {len(parts)} (element {elements[0]} …)"

@@ -221,12 +221,14 @@ class Path:
         kinds = {"force": "R", "moment": "M"}
         return {
             "reactions": {
-                support.name: {
-                    kind: [numbers[f"{support.name}.{letter}{i}"] for i in (1, 2, 3)] for kind, letter in kinds.items()
-                }
-                for support in self.model.named_supports
+                name: {kind: [numbers[f"{name}.{letter}{i}"] for i in (1, 2, 3)] for kind, letter in kinds.items()}
+                for name in self.model.reactions
             },
-            **{name: numbers[name] for name in ("elastic", "magnetic", "work", "work_field")},
+            **{
+                name: numbers[name]
+                for name in ("elastic", "magnetic", "springs", "work", "work_field")
+                if name in numbers
+            },
             "magnetic_torque": [numbers[f"torque{i}"] for i in (1, 2, 3)],
             "largest": described(numbers, self.model.shell.mesh.points),
         }

@@ -13,6 +13,7 @@ micro-rotation linear where only corners carry it.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -60,6 +61,40 @@ def shares(shell: Shell, group: str, field: str) -> FloatArray:
     return parts / parts.sum()
 
 
+class Products(NamedTuple):
+    """Integrals of products of the functions of u over a group, which sum to its measure.
+
+    Attributes
+    ----------
+    rows, columns : ndarray, shape (n,)
+        Pairs of nodes; a pair may stand here several times.
+    values : ndarray, shape (n,)
+        m along edges, m² over elements; of nodes one by one 1.
+    """
+
+    rows: IntArray
+    columns: IntArray
+    values: FloatArray
+
+
+def products(shell: Shell, group: str) -> Products:
+    """Products of the functions by which loads on a group of nodes, edges or elements are shared."""
+    mesh = shell.mesh
+    if group in mesh.edge_groups:
+        members = mesh.edge_groups[group]
+        functions, lengths = _edge_functions(mesh.points[members], quadratic=True)
+        values = np.einsum("ep,pi,pj->eij", lengths, functions, functions)
+    elif group in mesh.element_groups:
+        members = mesh.elements[mesh.element_groups[group]]
+        carried, areas = _element_functions(mesh.points[members], shell.element, "u")
+        values = np.einsum("ep,epi,epj->eij", areas, carried, carried)
+    else:
+        members = mesh.nodes_of(group)[:, None]
+        values = np.ones((len(members), 1, 1))
+    count = members.shape[1]
+    return Products(np.repeat(members, count, axis=1).ravel(), np.tile(members, count).ravel(), values.ravel())
+
+
 def centroid_weights(shell: Shell, groups: Sequence[str]) -> FloatArray:
     """Weights (nodes,) whose mean of positions is the centroid of some groups; they sum to one.
 
@@ -88,6 +123,12 @@ def nodal_areas(shell: Shell, members: IntArray) -> FloatArray:
 
 def _along_edges(points: FloatArray, quadratic: bool) -> FloatArray:
     """Integrals (edges, 3) of the functions of end, end and middle over the length of edges (edges, 3, 3), m."""
+    functions, lengths = _edge_functions(points, quadratic)
+    return lengths @ functions
+
+
+def _edge_functions(points: FloatArray, quadratic: bool) -> tuple[FloatArray, FloatArray]:
+    """Functions (p, 3) of end, end and middle, and lengths (edges, p) of the points, of edges (edges, 3, 3), m."""
     s, weights = np.polynomial.legendre.leggauss(POINTS)
     middle = 1.0 - s**2
     slope = np.column_stack([s - 0.5, s + 0.5, -2.0 * s])
@@ -95,13 +136,19 @@ def _along_edges(points: FloatArray, quadratic: bool) -> FloatArray:
     functions = np.column_stack([0.5 * (1.0 - s), 0.5 * (1.0 + s), np.zeros(POINTS)])
     if quadratic:
         functions += middle[:, None] * [-0.5, -0.5, 1.0]
-    return length @ functions
+    return functions, length
 
 
 def _over_elements(points: FloatArray, element: ElementType, field: str) -> FloatArray:
     """Integrals (elements, nodes) of a field's functions over the area of elements (elements, 8, 3), m²."""
+    carried, areas = _element_functions(points, element, field)
+    return np.einsum("ep,epn->en", areas, carried)
+
+
+def _element_functions(points: FloatArray, element: ElementType, field: str) -> tuple[FloatArray, FloatArray]:
+    """A field's functions (elements, p, nodes), and areas (elements, p) of the points, of elements (elements, 8, 3)."""
     parent, weights = gauss_legendre(POINTS)
     A = np.einsum("epan,enx->epax", element.functions(8, parent, points).derivatives, points)
     area = np.linalg.norm(np.cross(A[:, :, 0], A[:, :, 1]), axis=-1) * weights
     carried = loaded(element, parent, points) if field == "u" else element.functions(element.rest_nodes, parent, points)
-    return np.einsum("ep,epn->en", area, carried.values)
+    return np.asarray(carried.values), area
