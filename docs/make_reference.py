@@ -30,6 +30,7 @@ from magshell.magnetics.remanence import REMANENCES
 from magshell.materials import MATERIALS, MODULI, keys_of
 from magshell.model.loads import LOADS
 from magshell.model.parts import MOST_LEVELS
+from magshell.model.springs import SPRINGS
 from magshell.model.supports import SUPPORTS
 from magshell.problem import examples, fields, schema
 from magshell.problem.schema.region import Thickness
@@ -336,7 +337,8 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "remanence": "The remanent flux density; elements without one have none.",
             "field": "The external field.",
             "loads": "Mechanical loads.",
-            "supports": "What holds the shell.",
+            "supports": "What holds the shell; may be left out where springs hold it.",
+            "springs": "Elastic supports.",
             "stages": "Parts of the load path, in sequence; left out: one, or as many as the longest history has.",
             "probes": "Nodes to follow: a name and the reference position.",
             "results": "Axes of tensors, and what files hold beside the usual.",
@@ -373,6 +375,10 @@ DESCRIBED = {
         name: Described(table, SUPPORTS[name].all_keys(), {"kind": "Which support."})
         for name, table in schema.support_tables().items()
     },
+    **{
+        name: Described(table, SPRINGS[name].keys, {"kind": "Which springs."})
+        for name, table in schema.spring_tables().items()
+    },
 }
 TABLES |= {
     name: (one.table, {**one.which, **{key: about.meaning for key, about in one.keys.items()}})
@@ -389,6 +395,7 @@ TOP = {
     "remanence": "list of tables",
     "loads": "list of tables",
     "supports": "list of tables, at least one",
+    "springs": "list of tables",
     "stages": "list of tables",
     "probes": "table of positions",
 }

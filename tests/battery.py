@@ -169,15 +169,23 @@ class Unsupported:
     local_axis: tuple = (1.0, 0.0, 0.0)
     outputs: tuple = ()
     rigid: tuple = ()
+    springs: tuple = ()
 
     @cached_property
     def rows(self):
         return rows_of(self.shell, self.rigid)
 
     @cached_property
+    def places(self):
+        return Places(self.shell.mesh, self.rows.carriers, self.rigid)
+
+    @cached_property
     def constraints(self):
-        places = Places(self.shell.mesh, self.rows.carriers, self.rigid)
-        return self.rows.constraints(resolve(places, self.supports))
+        return self.rows.constraints(resolve(self.places, self.supports))
+
+    @cached_property
+    def elastic(self):
+        return tuple(spring.applied(self.shell, self.places) for spring in self.springs)
 
     @cached_property
     def applied(self):

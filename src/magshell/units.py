@@ -99,12 +99,12 @@ STIFFNESS = _dimension(
     {"N/mm": 1e3, "N/m": 1e-1, "mN/m": 0.0},
 )
 LINE_STIFFNESS = _dimension(
-    "stiffness per length", {"N/m^2": "1", "N/mm^2": "1e6", "Pa": "1", "kPa": "1e3", "MPa": "1e6"}, {"N/m^2": 0.0}
+    "stiffness per length", {"N/m^2": "1", "N/mm^2": "1e6", "Pa": "1", "kPa": "1e3", "MPa": "1e6"}, {"N/mm^2": 1e5, "N/m^2": 0.0}
 )
 AREA_STIFFNESS = _dimension(
     "stiffness per area",
     {"N/m^3": "1", "N/mm^3": "1e9", "Pa/m": "1", "kPa/mm": "1e6", "kPa/m": "1e3"},
-    {"N/mm^3": 1e8, "N/m^3": 0.0},
+    {"N/mm^3": 1e8, "kPa/mm": 1e5, "N/m^3": 0.0},
 )
 DENSITY = _dimension("density", {"kg/m^3": "1", "g/cm^3": "1e3"}, {"kg/m^3": 0.0})
 MASS = _dimension("mass", {"kg": "1", "g": "1e-3", "mg": "1e-6"}, {"kg": 1.0, "g": 1e-4, "mg": 0.0})

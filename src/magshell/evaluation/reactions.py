@@ -65,7 +65,7 @@ def reactions(discretisation: Discretisation, state: State, forces: FloatArray) 
         found.append(Reaction(support.name, point, f_u.sum(axis=0), moment))
     model = discretisation.model
     for spring, elastic, one in zip(model.springs, model.elastic, discretisation.springs.each(state), strict=True):
-        point = elastic.weights @ x[: len(elastic.weights)] if spring.about is None else spring.about
+        point = elastic.weights @ x[: len(elastic.weights)] if elastic.about is None else elastic.about
         moments = cross(x - point, one[:, COLUMNS["u"]]) + cross(d, one[:, COLUMNS["w"]]) + one[:, COLUMNS["omega"]]
         found.append(Reaction(reaction_name(spring), point, one[:, COLUMNS["u"]].sum(axis=0), moments.sum(axis=0)))
     return found

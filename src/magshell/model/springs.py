@@ -24,6 +24,7 @@ from numpy.typing import ArrayLike
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.keys import Key
+from magshell.mesh import Mesh
 from magshell.model.loads.dead import nodal
 from magshell.model.loads.distribution import Products, centroid_weights, products
 from magshell.model.loads.load import Applied, Pairs
@@ -40,7 +41,11 @@ class Elastic(Applied, Protocol):
 
     @property
     def weights(self) -> FloatArray:
-        """The mean of the places' positions with these (places,) is what the moment of its reaction is about."""
+        """The mean of the places' positions with these (places,) is the centroid."""
+
+    @property
+    def about(self) -> FloatArray | None:
+        """What the moment of its reaction is about (3,), m; None: the centroid."""
 
     def energy(self, state: State) -> float:
         """J."""
@@ -114,7 +119,8 @@ class Spring:
             else:
                 weights[: len(shell.mesh.points)] = centroid_weights(shell, [self.group])
         blocks = density * shared.values[:, None, None] * self._projection
-        return _Springs(shared.rows, shared.columns, blocks, weights)
+        about = None if self.point is None else self._vector("point", self.point)
+        return _Springs(shared.rows, shared.columns, blocks, weights, about)
 
     def _products(self, shell: Shell, places: Places, key: str) -> Products:
         mesh = shell.mesh
@@ -158,11 +164,6 @@ class Spring:
         unit = unit / np.linalg.norm(unit)
         return np.outer(unit, unit)
 
-    @property
-    def about(self) -> FloatArray | None:
-        """`point` as an array (3,); None: the centroid."""
-        return None if self.point is None else self._vector("point", self.point)
-
     def _vector(self, name: str, value: ArrayLike) -> FloatArray:
         try:
             found = np.array(value, dtype=float)
@@ -185,12 +186,12 @@ class Spring:
         except InputError as error:
             raise InputError(f"{self.label}: {error}") from None
 
-    def words(self, places: Places) -> str:
+    def words(self, mesh: Mesh) -> str:
         """The springs in `magshell check`."""
         key, value = self._amount()
         along = "" if self.direction is None else f" along {vector(np.ravel(self.direction))}"
         in_all = " in all" if key == "stiffness" else ""
-        return f"{show(value, self.amounts[key])}{in_all}{along}, {counted(len(places.named(self.group)), 'node')}"
+        return f"{show(value, self.amounts[key])}{in_all}{along}, {counted(len(mesh.nodes_of(self.group)), 'node')}"
 
     @property
     def legend(self) -> str:
@@ -211,6 +212,7 @@ class _Springs:
     columns: IntArray
     blocks: FloatArray
     weights: FloatArray
+    about: FloatArray | None
 
     @property
     def conservative(self) -> bool:

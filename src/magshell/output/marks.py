@@ -26,7 +26,8 @@ LONGEST, SHORTEST = 0.11, 0.03
 """Length of an arrow over the size of the part."""
 SAME = 1e-9
 TIP = 0.11
-"""Radius of an arrow's head over its length."""
+"""Radius of an arrow's head, and of a coil, over its length."""
+COIL_TURNS = 5
 
 
 class Solids(Enum):
@@ -35,6 +36,7 @@ class Solids(Enum):
     ARROWS = ("$\\rightarrow$", 20.0)
     CUBES = ("s", 8.0)
     BALLS = ("o", 7.0)
+    COILS = ("$\\wr$", 13.0)
 
     @property
     def marker(self) -> str:
@@ -58,9 +60,9 @@ class Mark:
     colour : str
     solids : Solids
     places : FloatArray, shape (n, 3)
-        Middles of arrows, cubes and balls, m.
+        Middles of arrows, coils, cubes and balls, m.
     vectors : FloatArray, shape (n, 3)
-        Of arrows, as long as they are drawn, m.
+        Of arrows and coils, as long as they are drawn, m.
     width : float
         Of cubes and balls, m.
     letters : list of (str, FloatArray (3,), (float, float))
@@ -78,7 +80,7 @@ class Mark:
     @property
     def extent(self) -> FloatArray:
         """Points (m, 3) that the picture must hold."""
-        if self.solids is not Solids.ARROWS:
+        if self.solids not in (Solids.ARROWS, Solids.COILS):
             return self.places
         beyond = 0.7 if self.letters else 0.5
         ends = np.concatenate([self.places - 0.5 * self.vectors, self.places + beyond * self.vectors])
@@ -92,15 +94,15 @@ class Mark:
         if not len(self.places):
             return
         points = pyvista.PolyData(self.places)
-        if self.solids is Solids.ARROWS:
+        if self.solids in (Solids.ARROWS, Solids.COILS):
             lengths = np.linalg.norm(self.vectors, axis=1)
             points["length"], points["vector"] = lengths, unit(self.vectors)
             slim = 0.8 if len(self.places) == 1 else 1.0
-            arrow = pyvista.Arrow(
+            solid = _coil() if self.solids is Solids.COILS else pyvista.Arrow(
                 start=(-0.5, 0, 0), tip_length=0.34 * slim, tip_radius=TIP * slim, shaft_radius=0.04 * slim,
                 tip_resolution=32, shaft_resolution=24,
             )  # fmt: skip
-            body = points.glyph(orient="vector", scale="length", factor=1.0, geom=arrow)
+            body = points.glyph(orient="vector", scale="length", factor=1.0, geom=solid)
         else:
             cube = self.solids is Solids.CUBES
             geometry = pyvista.Cube() if cube else pyvista.Sphere(theta_resolution=24, phi_resolution=24)
@@ -108,6 +110,17 @@ class Mark:
         plotter.add_mesh(
             body, color=self.colour, smooth_shading=self.solids is Solids.BALLS, ambient=0.62, specular=0.08
         )
+
+
+def _coil() -> Any:
+    """A spring of length 1 along X1 about its middle."""
+    import pyvista
+
+    s = np.linspace(0.0, 1.0, 16 * COIL_TURNS + 1)
+    radius = TIP * np.clip(10.0 * np.minimum(s, 1.0 - s), 0.0, 1.0)
+    angle = 2.0 * np.pi * COIL_TURNS * s
+    points = np.column_stack([s - 0.5, radius * np.cos(angle), radius * np.sin(angle)])
+    return pyvista.Spline(points, 4 * len(points)).tube(radius=0.25 * TIP, n_sides=12)
 
 
 def remanence_marks(model: Model, shown: FloatArray, axes: FloatArray, template: bool) -> list[Mark]:
@@ -225,6 +238,19 @@ def support_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:
         name = f"{support.group}: {support.legend}"
         colour = SUPPORTS[number % len(SUPPORTS)]
         marks.append(Mark(name, colour, solids, mesh.points[nodes] + 0.3 * width * axes[2], width=wider))
+    return marks
+
+
+def spring_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:
+    """Coils that hang on the group, along the springs' direction or down in the picture."""
+    marks, mesh = [], model.shell.mesh
+    for number, spring in enumerate(model.springs, start=len(model.supports)):
+        nodes = mesh.nodes_of(spring.group)
+        nodes = nodes[spread_out(mesh.points[nodes], MOST_OF_A_LOAD)]
+        along = axes[1] if spring.direction is None else unit(np.array(spring.direction, dtype=float)[None])[0]
+        vectors = np.tile(0.09 * size * along, (len(nodes), 1))
+        name, colour = f"{spring.group}: {spring.legend}", SUPPORTS[number % len(SUPPORTS)]
+        marks.append(Mark(name, colour, Solids.COILS, mesh.points[nodes] - 0.56 * vectors, vectors))
     return marks
 
 

@@ -124,6 +124,8 @@ def _model_rows(model: Model) -> list[tuple[str, str]]:
         rows.append(("loads", _listed([f"{load.kind} on {load.group or 'whole shell'}" for load in model.loads])))
     if model.supports:
         rows.append(("supports", _listed([f"{type(one).__name__} on {one.group}" for one in model.supports])))
+    if model.springs:
+        rows.append(("springs", _listed([f"{one.legend} on {one.group}" for one in model.springs])))
     if len(model.stages) > 1:
         rows.append(("stages", ", ".join(stage.name or stage.control for stage in model.stages)))
     if model.probes:

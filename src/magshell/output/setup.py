@@ -16,7 +16,15 @@ from magshell.errors import InputError
 from magshell.magnetics.remanence import placed
 from magshell.mesh.edges import SIDES
 from magshell.model.words import name_of, thickness_of
-from magshell.output.marks import Mark, field_marks, load_marks, probe_marks, remanence_marks, support_marks
+from magshell.output.marks import (
+    Mark,
+    field_marks,
+    load_marks,
+    probe_marks,
+    remanence_marks,
+    spring_marks,
+    support_marks,
+)
 from magshell.output.scene import (
     OVERSAMPLING,
     SURFACE,
@@ -145,7 +153,7 @@ def setup_scene(model: Model, pixels: tuple[int, int], template: bool = False, b
     marks = remanence_marks(model, shown, axes, template)
     if not (template or bare):
         marks += [*field_marks(model, extent, axes), *load_marks(model, size, axes)]
-        marks += [*support_marks(model, size, axes), *probe_marks(model, size, axes)]
+        marks += [*support_marks(model, size, axes), *spring_marks(model, size, axes), *probe_marks(model, size, axes)]
     kept = np.concatenate([extent, *(mark.extent for mark in marks)])
     camera = fit(kept, axes, pixels[0] / pixels[1])
 

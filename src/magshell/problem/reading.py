@@ -223,6 +223,7 @@ def _kinds(place: str) -> list[str]:
     from magshell.magnetics.remanence import REMANENCES
     from magshell.materials import MATERIALS, names_of
     from magshell.model.loads import LOADS
+    from magshell.model.springs import SPRINGS
     from magshell.model.supports import SUPPORTS
     from magshell.problem import schema
 
@@ -232,7 +233,12 @@ def _kinds(place: str) -> list[str]:
         return [get_args(field.annotation)[0] for field in fields if field is not None]
     if table == "material":
         return [name for law in MATERIALS for name in names_of(law)]
-    registries: dict[str, Mapping[str, Any]] = {"remanence": REMANENCES, "supports": SUPPORTS, "loads": LOADS}
+    registries: dict[str, Mapping[str, Any]] = {
+        "remanence": REMANENCES,
+        "supports": SUPPORTS,
+        "springs": SPRINGS,
+        "loads": LOADS,
+    }
     return list(registries[table])
 
 

@@ -14,6 +14,7 @@ from magshell.materials import own_keys
 from magshell.mesh.files import FileMesh
 from magshell.mesh.quality import worst
 from magshell.model import coupling_limit, symmetry
+from magshell.model.springs import Spring
 from magshell.model.supports import Support, SymmetryPlane
 from magshell.model.words import offset_of, span
 from magshell.problem import (
@@ -71,7 +72,8 @@ def describe(problem: Problem) -> Report:
             "Remanence": list(_remanence(problem, figures)),
             "Field": list(_field(problem, figures)),
             **({"Loads": list(load_report.lines(problem, strong))} if problem.file.loads else {}),
-            "Supports": list(_supports(problem, figures)),
+            **({"Supports": list(_supports(problem, figures))} if problem.model.supports else {}),
+            **({"Springs": list(_springs(problem, figures))} if problem.model.springs else {}),
             **({"Stages": list(_stages(problem))} if len(problem.model.stages) > 1 or problem.file.stages else {}),
             "Probes": list(_probes(problem, figures.extent)),
             **({"Results": list(_results(problem))} if problem.file.results.model_fields_set else {}),
@@ -206,7 +208,13 @@ def _supports(problem: Problem, figures: Whole) -> Iterator[tuple[str, str]]:
         yield support.group, f"{support.words}, {nodes}{_reaction(support, figures.extent)}{half}"
 
 
-def _reaction(support: Support, extent: float) -> str:
+def _springs(problem: Problem, figures: Whole) -> Iterator[tuple[str, str]]:
+    mesh = problem.model.shell.mesh
+    for spring in problem.model.springs:
+        yield spring.group, f"{spring.words(mesh)}{_reaction(spring, figures.extent)}"
+
+
+def _reaction(support: Support | Spring, extent: float) -> str:
     """Name and point of a support's reaction, where they are given."""
     text = "" if support.name is None else f", reaction '{support.name}'"
     if support.point is None:

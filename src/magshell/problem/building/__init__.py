@@ -14,6 +14,7 @@ from magshell.mesh import Mesh
 from magshell.model.loads import LOADS, Load
 from magshell.model.model import Model
 from magshell.model.shell import Shell
+from magshell.model.springs import SPRINGS, Spring
 from magshell.model.stages import Stage
 from magshell.model.supports import SUPPORTS, Support
 from magshell.problem import schema
@@ -85,6 +86,7 @@ def build(file: ProblemFile, source: str, text: str = "", folder: pathlib.Path =
         shell = build_shell(file, mesh, folder)
         field = _field(file.field)
         supports = _supports(file.supports, mesh)
+        springs = _springs(file.springs, mesh)
         loads = _loads(file.loads, shell)
         _probes_exist(file.probes, mesh)
         with at("results.outputs"):
@@ -99,6 +101,7 @@ def build(file: ProblemFile, source: str, text: str = "", folder: pathlib.Path =
             stages=_stages(file.stages),
             local_axis=file.results.local_axis,
             outputs=file.results.outputs,
+            springs=springs,
         )
         settings = Settings(**file.solver.model_dump(exclude_none=True))
         make_solver(settings.linear_solver)
@@ -136,6 +139,16 @@ def _supports(tables: tuple[schema.SupportTable, ...], mesh: Mesh) -> list[Suppo
             cls = SUPPORTS[table.kind]
             supports.append(cls(**{key: getattr(table, key) for key in cls.all_keys()}))
     return supports
+
+
+def _springs(tables: tuple[schema.SpringTable, ...], mesh: Mesh) -> list[Spring]:
+    springs: list[Spring] = []
+    for number, table in enumerate(tables):
+        with at(f"springs[{number}].group"):
+            mesh.nodes_of(table.group)
+        cls = SPRINGS[table.kind]
+        springs.append(cls(**{key: getattr(table, key) for key in cls.keys}))
+    return springs
 
 
 def _loads(tables: tuple[schema.LoadTable, ...], shell: Shell) -> list[Load]:

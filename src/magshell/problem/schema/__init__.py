@@ -15,10 +15,11 @@ from pydantic import BeforeValidator, Field, create_model, model_validator
 from magshell.magnetics.remanence import REMANENCES
 from magshell.materials import MATERIALS, keys_of, names_of
 from magshell.model.loads import LOADS
+from magshell.model.springs import SPRINGS
 from magshell.model.supports import SUPPORTS
 from magshell.problem import fields as f
 from magshell.problem.schema.described import table_of
-from magshell.problem.schema.loading import FieldTable, LoadTable, SupportTable
+from magshell.problem.schema.loading import FieldTable, LoadTable, SpringTable, SupportTable
 from magshell.problem.schema.material import MaterialTable
 from magshell.problem.schema.mesh import (
     Annulus,
@@ -63,6 +64,7 @@ __all__ = [
     "ShellTable",
     "SolverTable",
     "SpherePatch",
+    "SpringTable",
     "StageTable",
     "SupportTable",
     "Table",
@@ -72,6 +74,7 @@ __all__ = [
     "material_tables",
     "problem_file",
     "remanence_tables",
+    "spring_tables",
     "support_tables",
 ]
 
@@ -83,6 +86,7 @@ class ProblemFile(Table):
     chosen_by: ClassVar[dict[str, str]] = {
         "mesh": "generator",
         "supports[]": "kind",
+        "springs[]": "kind",
         "loads[]": "kind",
         "material": "law",
         "remanence[]": "kind",
@@ -103,11 +107,18 @@ class ProblemFile(Table):
     remanence: tuple[RemanenceTable, ...] = ()
     field: FieldTable = FieldTable(flux_density=(0.0, 0.0, 0.0))
     loads: tuple[LoadTable, ...] = ()
-    supports: tuple[SupportTable, ...]
+    supports: tuple[SupportTable, ...] = ()
+    springs: tuple[SpringTable, ...] = ()
     stages: tuple[StageTable, ...] = ()
     probes: dict[f.ProbeName, f.Position] = {}
     results: ResultsTable = ResultsTable()
     solver: SolverTable = SolverTable()
+
+    @model_validator(mode="after")
+    def _is_held(self) -> ProblemFile:
+        if not self.supports and not self.springs:
+            raise key_error("supports", "is missing")
+        return self
 
     @model_validator(mode="after")
     def _is_made_of_something(self) -> ProblemFile:
@@ -150,14 +161,20 @@ def support_tables() -> dict[str, type[Table]]:
     return {name: table_of("kind", (name,), one, one.all_keys(), SupportTable) for name, one in SUPPORTS.items()}
 
 
+def spring_tables() -> dict[str, type[Table]]:
+    """The tables of all springs, by kind."""
+    return {name: table_of("kind", (name,), one, one.keys, SpringTable) for name, one in SPRINGS.items()}
+
+
 def problem_file() -> type[ProblemFile]:
     """The model of a file, with all that is registered now."""
-    return _problem_file(*(tuple(registry.items()) for registry in (MATERIALS, REMANENCES, LOADS, SUPPORTS)))
+    return _problem_file(*(tuple(registry.items()) for registry in (MATERIALS, REMANENCES, LOADS, SUPPORTS, SPRINGS)))
 
 
 @lru_cache(maxsize=1)
 def _problem_file(*registered: tuple[tuple[str, Any], ...]) -> type[ProblemFile]:
-    laws, ways, loads, supports = material_tables(), remanence_tables(), load_tables(), support_tables()
+    laws, ways, loads = material_tables(), remanence_tables(), load_tables()
+    supports, springs = support_tables(), spring_tables()
     law, magnetised = _one_of(laws, "law"), _list_of(_one_of(ways, "kind"))
     layer = create_model("LayerTable", __base__=LayerTable, material=(law, ...), remanence=(magnetised, ()))
     layers: dict[str, Any] = {"layers": (_list_of(layer), ())}
@@ -171,10 +188,12 @@ def _problem_file(*registered: tuple[tuple[str, Any], ...]) -> type[ProblemFile]
         "regions": (_list_of(region), ()),
         "remanence": (magnetised, ()),
         "loads": (_list_of(_one_of(loads, "kind")), ()),
-        "supports": (Annotated[_list_of(_one_of(supports, "kind")), BeforeValidator(f.not_empty)], ...),
+        "supports": (Annotated[_list_of(_one_of(supports, "kind")), BeforeValidator(f.not_empty)], ()),
+        "springs": (_list_of(_one_of(springs, "kind")), ()),
     }
     made = create_model("ProblemFile", __base__=ProblemFile, **entries)
-    tables = (made, shell, region, layer, *laws.values(), *ways.values(), *loads.values(), *supports.values())
+    tables: tuple[type[Table], ...] = (made, shell, region, layer)
+    tables += tuple(table for kinds in (laws, ways, loads, supports, springs) for table in kinds.values())
     made.classes = {table.__name__: table for table in tables}
     for table in tables:  # pickle finds classes in modules only
         setattr(table, "__reduce__", _pickled)  # noqa: B010

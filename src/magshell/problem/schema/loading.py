@@ -1,4 +1,4 @@
-"""The table `field`, and what the entries of `supports` and `loads` have in common."""
+"""The table `field`, and what the entries of `supports`, `springs` and `loads` have in common."""
 
 from __future__ import annotations
 
@@ -39,6 +39,13 @@ class FieldTable(Table):
 
 class SupportTable(Table):
     """What the tables of all supports have."""
+
+    kind: str
+    group: f.Name
+
+
+class SpringTable(Table):
+    """What the tables of all springs have."""
 
     kind: str
     group: f.Name
