@@ -394,7 +394,7 @@ TOP = {
     "regions": "list of tables",
     "remanence": "list of tables",
     "loads": "list of tables",
-    "supports": "list of tables, at least one",
+    "supports": "list of tables",
     "springs": "list of tables",
     "stages": "list of tables",
     "probes": "table of positions",
