@@ -99,7 +99,9 @@ STIFFNESS = _dimension(
     {"N/mm": 1e3, "N/m": 1e-1, "mN/m": 0.0},
 )
 LINE_STIFFNESS = _dimension(
-    "stiffness per length", {"N/m^2": "1", "N/mm^2": "1e6", "Pa": "1", "kPa": "1e3", "MPa": "1e6"}, {"N/mm^2": 1e5, "N/m^2": 0.0}
+    "stiffness per length",
+    {"N/m^2": "1", "N/mm^2": "1e6", "Pa": "1", "kPa": "1e3", "MPa": "1e6"},
+    {"N/mm^2": 1e5, "N/m^2": 0.0},
 )
 AREA_STIFFNESS = _dimension(
     "stiffness per area",

@@ -83,8 +83,8 @@ class Spring:
         "per_length": Key("LineStiffness", "Per undeformed length of a group of edges.", "one of the three is needed"),
         "per_area": Key("AreaStiffness", "Per undeformed area of a group of elements.", "one of the three is needed"),
         "direction": Key("Direction", "Along which they resist displacement, fixed in space.", "every direction"),
-        "name": REACTION["name"],
-        "point": REACTION["point"],
+        "name": Key("Name", "Of the reaction in the results.", "the group"),
+        "point": Key("Position", REACTION["point"].meaning, "the group's centroid"),
     }
     amounts: ClassVar[Mapping[str, Dimension]] = {
         "stiffness": STIFFNESS,
