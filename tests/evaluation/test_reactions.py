@@ -10,7 +10,7 @@ from solver.models import LENGTH, THICKNESS, WIDTH, arm, rubber, strip
 
 import magshell as ms
 from magshell import DeformationGradientEnergy, MicroRotationEnergy, Model, Settings, solve
-from magshell.equations.instant import Instant, moved
+from magshell.equations.instant import Instant
 from magshell.errors import InputError
 from magshell.evaluation.converged import Converged, converged
 from magshell.linalg import make_solver
@@ -28,7 +28,7 @@ def resolved(d, state, loading):
         assembly = d.assemble(Instant(state, loading))
         if assembly.worst[1] < 1e-13:
             break
-        state = moved(state, d.correction(make_solver("superlu").factorise(assembly.matrix).solve(assembly.right_side)))
+        state = d.moved(state, d.correction(make_solver("superlu").factorise(assembly.matrix).solve(assembly.right_side)))
     return state
 
 

@@ -16,7 +16,7 @@ import pytest
 import magshell as ms
 from magshell import Settings, UniformField, solve
 from magshell.equations.discretisation import Discretisation
-from magshell.equations.instant import Instant, difference, moved
+from magshell.equations.instant import Instant, difference
 from magshell.linalg import make_solver, nested_dissection
 from magshell.magnetics import laws
 from magshell.shell.elements import ELEMENTS
@@ -124,7 +124,7 @@ def constrained_errors(kind: str, ε: float) -> np.ndarray:
     discretisation = Recording(TURNED_IN_A_FIELD, nested_dissection)
     discretisation.states = []
     increment = ε * difference(begin, discretisation.undeformed())
-    state = moved(begin, increment)
+    state = discretisation.moved(begin, increment)
     prediction = discretisation.predicted(Instant(begin, TURNED_IN_A_FIELD.loading(0.5)), increment)
     tip, load_factor = TURNED_IN_A_FIELD.probe_nodes["tip"], 0.5 * (1 + ε)
     held: Constraint = ProbeValue(tip, 2, float(state.u[tip, 2]))
