@@ -69,7 +69,7 @@ def test_both_ways_out_are_offered(slit, tube):
     ):
         assert phrase in message, message
     assert 'cuts = ["slit"] keeps them apart (--cut "slit")' in message
-    with pytest.raises(MeshError, match=r'cuts = \["left"\] keeps them apart'):
+    with pytest.raises(MeshError, match=r'cuts = \["right", "left"\] keeps them apart \(--cut "right" --cut "left"\)'):
         ms.mesh.read(tube)
 
 
@@ -136,6 +136,9 @@ PROBLEM = """
 file = "slit.msh"
 {more}
 
+[mesh.element_groups.all]
+x3 = ["-1 mm", "1 mm"]
+
 [shell]
 thickness = "0.1 mm"
 
@@ -150,6 +153,7 @@ group = "left"
 
 [[loads]]
 kind = "pressure"
+group = "all"
 pressure = "1 Pa"
 """
 
@@ -169,7 +173,7 @@ def test_from_the_command_line_and_in_a_problem(slit, monkeypatch, capsys):
     case = slit.parent / "case.toml"
     for more, status, phrase in (
         ("", 2, "mesh.file: slit.msh: Elements"),
-        ('cuts = "slit"', 0, "cuts slit (7 nodes)"),
+        ('cuts = "slit"', 0, "cuts slit (8 nodes)"),
         ('weld = "1 um"', 0, "3 nodes welded to others"),
         ('cuts = ["slot"]', 2, "mesh.cuts: there is no edge group 'slot'"),
         ('weld = "0.6 mm"', 2, "mesh.weld: 0.6 mm merges"),
