@@ -120,6 +120,13 @@ def test_a_cut_mesh_is_made_again_from_its_arrays():
         Mesh(made.points, made.elements, *groups)
 
 
+def test_a_position_on_both_lips_is_refused():
+    made = cut(sheet(), "slit")
+    with pytest.raises(InputError, match=r"Nodes \d+, \d+ all lie at \(2, 2, 0\) m, on the lips of a cut"):
+        made.node_at((2, 2, 0))
+    assert made.points[made.node_at((1, 2, 0))].tolist() == [1, 2, 0]
+
+
 def test_one_lip_is_enough_to_name_a_slit():
     made = cut(sheet(), "slit")
     lip = made.edge_groups["slit"][::2]

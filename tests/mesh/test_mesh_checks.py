@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from magshell.errors import MeshError
-from magshell.mesh import Mesh, cylinder, rectangle, sphere_patch
+from magshell.mesh import Mesh, cylinder, rectangle, sphere_patch, split
 
 
 def refused(points, elements, *phrases, **groups):
@@ -192,6 +192,37 @@ def test_a_node_on_a_curved_edge_of_another_element():
     """Of two rings one is turned by 5 of the 30 degrees of an element: nodes lie on the true circle only."""
     points, elements = glued(cylinder(1.0, 0.5, (12, 2)), moved(cylinder(1.0, 0.5, (12, 2), angle=(5, 365)), x3=0.5))
     refused(points, elements, "do not match", "lies on the edge of the first")
+
+
+@pytest.mark.parametrize("shift", [0.3, 0.42])
+@pytest.mark.parametrize("triangles", [False, True])
+def test_a_rib_that_stands_on_a_plate_without_nodes_there(shift, triangles):
+    """Its foot runs through the elements."""
+    plate = rectangle(2.0, 1.0, (4, 4))
+    plate = split(plate, "rising") if triangles else plate
+    rib = rectangle(1.0, 1.0, (2, 1)).points[:, [1, 0, 2]] * [0, 0.93, 0] + [0, 0.03, 0]
+    rib += np.stack([0 * rib[:, 0] + shift, 0 * rib[:, 0], rectangle(1.0, 1.0, (2, 1)).points[:, 1]], axis=1)
+    points = np.concatenate([plate.points, rib])
+    rows = np.concatenate([plate.elements, rectangle(1.0, 1.0, (2, 1)).elements + len(plate.points)])
+    refused(points, rows, "are not joined: node", "free edge of the second lies on the first", "T-joint", "leave a gap")
+    points[len(plate.points) :, 2] += 5e-3
+    assert len(Mesh(points, rows).parts) == 2
+
+
+def test_a_rib_on_a_curved_surface_is_found():
+    tube = cylinder(1.0, 1.0, (12, 2))
+    fin = rectangle(0.5, 0.9, (1, 2)).points
+    turn = np.radians(11.0)
+    outward = np.array([np.cos(turn), np.sin(turn), 0.0])
+    for gap, sound in ((0.0, False), (0.02, True)):
+        points = np.concatenate(
+            [tube.points, (1.0 + gap + fin[:, :1]) * outward + fin[:, 1:2] * [0, 0, 1] + [0, 0, 0.07]]
+        )
+        rows = np.concatenate([tube.elements, rectangle(0.5, 0.9, (1, 2)).elements + len(tube.points)])
+        if sound:
+            assert len(Mesh(points, rows).parts) == 2
+        else:
+            refused(points, rows, "are not joined", "free edge of the second")
 
 
 def test_a_narrow_gap_is_allowed():

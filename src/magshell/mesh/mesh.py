@@ -27,7 +27,7 @@ from magshell.mesh.edges import Edges, find_edges, is_triangle
 from magshell.mesh.geometry import COINCIDENT, check_shapes
 from magshell.mesh.ranges import Range, elements_between
 from magshell.mesh.unmatched import check_unmatched
-from magshell.mesh.wording import place
+from magshell.mesh.wording import listing, place
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -195,7 +195,8 @@ class Mesh:
         Raises
         ------
         InputError
-            There is none; the message has the nearest node and its distance.
+            There is none, and the message has the nearest node and its distance; or several, which lie on each other at
+            a cut.
         """
         target = np.asarray(point, dtype=np.float64)
         if target.shape != (3,) or not np.isfinite(target).all():
@@ -206,6 +207,10 @@ class Mesh:
             raise InputError(
                 f"There is no node at {place(target)}. The nearest is node {node} at "
                 f"{place(self.points[node])}, {distance[node]:.3g} m away."
+            )
+        if len(several := np.flatnonzero(distance <= COINCIDENT * self.size)) > 1:
+            raise InputError(
+                f"Nodes {listing(several)} all lie at {place(target)}, on the lips of a cut: take a position beside it."
             )
         return node
 
