@@ -87,6 +87,18 @@ def test_a_wide_moebius_band_keeps_one_line_across_it(seed):
     assert not np.isin(line.edges[1:, 0], rim).any()
 
 
+def test_a_moebius_band_is_read(tmp_path):
+    """Half of its elements turned: told, and as good as before."""
+    band = moebius(12, 2)
+    rows = band.elements.copy()
+    rows[::2] = rows[::2][:, TURNED_QUAD]
+    ms.mesh.write(Mesh(band.points, rows), tmp_path / "band.msh", "mm")
+    mesh = ms.mesh.read(tmp_path / "band.msh")
+    (line,) = junctions_of(mesh).flips
+    told = f"the surface has one side only: its normals change sign across {len(line.edges)} edges"
+    assert mesh.origin.changes[-1] == told
+
+
 def test_sheets_at_a_joint_are_turned_each_for_itself():
     """A fin on a plate: neighbours across the joint of three need not agree, those within a sheet do."""
     mesh = ms.mesh.profile(
