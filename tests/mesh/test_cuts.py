@@ -120,10 +120,15 @@ def test_a_cut_mesh_is_made_again_from_its_arrays():
         Mesh(made.points, made.elements, *groups)
 
 
-def test_a_position_on_both_lips_is_refused():
+def test_a_position_on_both_lips_is_refused_beside_them_it_is_found():
     made = cut(sheet(), "slit")
-    with pytest.raises(InputError, match=r"Nodes \d+, \d+ all lie at \(2, 2, 0\) m, on the lips of a cut"):
+    with pytest.raises(InputError, match=r"Nodes \d+, \d+ lie on each other at \(2, 2, 0\) m.*less than 7e-06 m"):
         made.node_at((2, 2, 0))
+    lips = {made.node_at((2, 2 + off, 0)): off for off in (-1e-6, 1e-6)}
+    for node, off in lips.items():
+        beside = made.points[made.elements[(made.elements == node).any(axis=1)]]
+        assert (np.sign(off) * (beside[..., 1] - 2) >= 0).all()
+    assert len(lips) == 2
     assert made.points[made.node_at((1, 2, 0))].tolist() == [1, 2, 0]
 
 
