@@ -101,6 +101,11 @@ KINDS = {
     tuple[fields.PositiveLength, ...]: "list of lengths > 0",
     dict[fields.Name, schema.Elements]: "table of selections",
     schema.Block: "table",
+    fields.NamePair: "two names",
+    fields.LengthPair: "two lengths > 0",
+    fields.Degrees: "angle",
+    dict[fields.Name, fields.PlaneCorner]: "table of points, each two lengths",
+    dict[fields.Name, schema.Wall]: "table of walls, see below",
     Folds: "list of folds, see below",
     tuple[fields.PositiveFluxDensity, ...]: "list of flux densities > 0, rising",
     dict[fields.Name, schema.Selection]: "table of selections",
@@ -177,6 +182,36 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             **GROUPS,
         },
     ),
+    "mesh-profile": (
+        schema.Profile,
+        {
+            "generator": "Which generator.",
+            "points": "Points of the cross-section, by name; each is an edge group.",
+            "walls": "The walls between them, by name; each is an element group.",
+            "length": "From the origin along the axis.",
+            "elements": "Elements across each wall that does not say its own, and along the axis.",
+            "axis": "Direction of the extrusion.",
+            "first": "Direction of the first coordinate of the points; the second is axis × first.",
+            **GROUPS,
+        },
+    ),
+    "wall": (
+        schema.Wall,
+        {"between": "The points that it joins.", "elements": "Elements across it."},
+    ),
+    "miura": (
+        schema.Miura,
+        {
+            "generator": "Which generator.",
+            "sides": "Sides of a panel: $b$ in the zigzag lines, which run along $X_1$, and $a$ in the lines along "
+            "$X_2$.",
+            "sector": "Acute angle $\\gamma$ of a panel, below 90°.",
+            "fold": "Angle $\\theta$ between the panels and the plane $X_1$–$X_2$: 0 is flat, 90° folded together.",
+            "cells": "Cells along $X_1$ and $X_2$, of two by two panels each.",
+            "elements": "Elements of each panel along these.",
+            **GROUPS,
+        },
+    ),
     "polygon": (
         schema.Polygon,
         {
@@ -201,6 +236,9 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "second_order": "Whether elements of first order get mid-side nodes, on the surface that they stand for.",
             "closed": "Whether a closed surface with sharp edges or parallel faces is meant, such as a box; else it is "
             "refused as the skin of a solid.",
+            "weld": "Nodes of a mesh that are no further apart become one, as at the open seam of a tube.",
+            "cuts": "Edge groups along which the surface is cut: nodes that lie on each other there stay apart, others "
+            "are doubled.",
             **GROUPS,
         },
     ),
@@ -404,6 +442,7 @@ TOP = {
 }
 OTHERWISE = {
     ("blocks", "elements"): "each block its own",
+    ("wall", "elements"): "that of `mesh`",
     ("block", "elements"): "those of `mesh`",
     ("mesh-file", "unit"): "that which the file says",
     ("mesh-file", "size"): "about 800 elements",

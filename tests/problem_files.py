@@ -85,6 +85,42 @@ angle = ["0 deg", "90 deg"]
     ('"left"', '"start"'),
 )
 
+PROFILE = changed(
+    with_mesh(
+        STRIP,
+        """[mesh]
+generator = "profile"
+length = "10 mm"
+elements = [2, 2]
+
+[mesh.points]
+low = [0, 0]
+knee = ["20 mm", 0]
+high = ["20 mm", "8 mm"]
+
+[mesh.walls]
+post = { between = ["low", "knee"], elements = 4 }
+arm = { between = ["knee", "high"] }
+
+""",
+    ),
+    ('group = "left"', 'group = "low"'),
+)
+MIURA = changed(
+    with_mesh(
+        STRIP,
+        """[mesh]
+generator = "miura"
+sides = ["10 mm", "8 mm"]
+sector = "60 deg"
+fold = "30 deg"
+cells = [1, 1]
+elements = [1, 1]
+
+""",
+    ),
+    ('[probes]\ntip = ["20 mm", 0, 0]\n', ""),
+)
 _MAGNETIC = STRIP[STRIP.index("[[remanence]]") : STRIP.index("[[supports]]")]
 LOADED = changed(
     STRIP,

@@ -110,6 +110,17 @@ def test_a_closed_surface_has_no_resultant(mesh, element):
     assert np.abs(np.cross(mesh.points + state.u, F).sum(axis=0)).max() < 1e-15 * np.abs(F).sum() * mesh.size
 
 
+def test_a_closed_surface_that_is_pushed_both_ways_has_no_potential():
+    """One side of the box faces inward: the pressure on it is not that of the enclosed volume."""
+    box = CLOSED["box"]
+    rows = box.elements.copy()
+    side = box.elements_of("face 0")
+    rows[side] = rows[side][:, [0, 3, 2, 1, 7, 6, 5, 4]]
+    turned = ms.mesh.Mesh(box.points, rows, box.element_groups)
+    assert applied(ms.Pressure("all", P), shell_of(box)).conservative
+    assert not applied(ms.Pressure("all", P), shell_of(turned)).conservative
+
+
 def test_positive_pressure_pushes_along_the_director():
     """The box's normals point outward: it is blown up, by p times the area of a side on each."""
     mesh = CLOSED["box"]

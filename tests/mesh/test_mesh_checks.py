@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from magshell.errors import MeshError
-from magshell.mesh import Mesh, cylinder, rectangle, sphere_patch
+from magshell.mesh import Mesh, cylinder, rectangle, sphere_patch, split
 
 
 def refused(points, elements, *phrases, **groups):
@@ -109,25 +109,27 @@ def test_an_element_twice(two):
     refused(points, np.vstack([elements, turned]), "Elements 1 and 2", "same corners")
 
 
-def test_neighbours_with_opposite_normals_are_both_named(two):
+def test_neighbours_may_have_opposite_normals(two):
     points, elements = two
     elements[1] = elements[1, [0, 3, 2, 1, 7, 6, 5, 4]]
-    refused(points, elements, "Elements 0 and 1 disagree", "node", "counter-clockwise")
+    assert len(Mesh(points, elements).parts) == 1
 
 
-def test_a_moebius_strip_has_no_upper_side():
-    mesh = rectangle(12.0, 1.0, (12, 1))
-    turn = mesh.points[:, 0] / 12 * 2 * np.pi
-    across = (mesh.points[:, 1] - 0.5)[:, None]
-    outward = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
-    tilt = np.cos(turn / 2)[:, None] * np.array([0, 0, 1.0]) + np.sin(turn / 2)[:, None] * outward
-    points = 4 * outward + across * tilt
-    left, right = mesh.nodes_of("left"), mesh.nodes_of("right")
-    weld = np.arange(len(points))
-    left, right = (n[np.argsort(mesh.points[n, 1])] for n in (left, right))
-    weld[right] = left[::-1]
-    kept, elements = np.unique(weld[mesh.elements], return_inverse=True)
-    refused(points[kept], elements.reshape(-1, 8), "Elements 0 and 11 disagree")
+@pytest.mark.parametrize("opposite", [False, True])
+def test_elements_that_lie_on_each_other(two, opposite):
+    """Two squares folded about their common edge, by all but 0.05 degrees and by all but 0.2 degrees."""
+    points, elements = two
+    if opposite:
+        elements[1] = elements[1, [0, 3, 2, 1, 7, 6, 5, 4]]
+    beyond = points[:, 0] > 1
+    for angle, sound in ((np.radians(0.2), True), (np.radians(0.05), False)):
+        folded = points.copy()
+        folded[beyond, 2] = (points[beyond, 0] - 1) * np.sin(angle)
+        folded[beyond, 0] = 1 - (points[beyond, 0] - 1) * 0.9 * np.cos(angle)
+        if sound:
+            assert len(Mesh(folded, elements).elements) == 2
+        else:
+            refused(folded, elements, "Elements 0 and 1 lie on each other", "(1, 0, 0) m", "(1, 1, 0) m", "0.05")
 
 
 def test_three_elements_on_an_edge(two):
@@ -137,7 +139,9 @@ def test_three_elements_on_an_edge(two):
     number = np.array([node_at(points, *p) if p[2] == 0 else -1 for p in upright])
     number[number < 0] = len(points) + np.arange((number < 0).sum())
     points = np.vstack([points, upright[upright[:, 2] > 0]])
-    refused(points, np.vstack([elements, number[fin.elements]]), "Elements 0, 1, 2 share the edge", "at most two")
+    mesh = Mesh(points, np.vstack([elements, number[fin.elements]]))
+    assert len(mesh.parts) == 1
+    assert len(mesh.boundary_edges) == 9
 
 
 def test_neighbours_with_a_middle_each(two):
@@ -188,6 +192,37 @@ def test_a_node_on_a_curved_edge_of_another_element():
     """Of two rings one is turned by 5 of the 30 degrees of an element: nodes lie on the true circle only."""
     points, elements = glued(cylinder(1.0, 0.5, (12, 2)), moved(cylinder(1.0, 0.5, (12, 2), angle=(5, 365)), x3=0.5))
     refused(points, elements, "do not match", "lies on the edge of the first")
+
+
+@pytest.mark.parametrize("shift", [0.3, 0.42])
+@pytest.mark.parametrize("triangles", [False, True])
+def test_a_rib_that_stands_on_a_plate_without_nodes_there(shift, triangles):
+    """Its foot runs through the elements."""
+    plate = rectangle(2.0, 1.0, (4, 4))
+    plate = split(plate, "rising") if triangles else plate
+    rib = rectangle(1.0, 1.0, (2, 1)).points[:, [1, 0, 2]] * [0, 0.93, 0] + [0, 0.03, 0]
+    rib += np.stack([0 * rib[:, 0] + shift, 0 * rib[:, 0], rectangle(1.0, 1.0, (2, 1)).points[:, 1]], axis=1)
+    points = np.concatenate([plate.points, rib])
+    rows = np.concatenate([plate.elements, rectangle(1.0, 1.0, (2, 1)).elements + len(plate.points)])
+    refused(points, rows, "are not joined: node", "free edge of the second lies on the first", "T-joint", "leave a gap")
+    points[len(plate.points) :, 2] += 5e-3
+    assert len(Mesh(points, rows).parts) == 2
+
+
+def test_a_rib_on_a_curved_surface_is_found():
+    tube = cylinder(1.0, 1.0, (12, 2))
+    fin = rectangle(0.5, 0.9, (1, 2)).points
+    turn = np.radians(11.0)
+    outward = np.array([np.cos(turn), np.sin(turn), 0.0])
+    for gap, sound in ((0.0, False), (0.02, True)):
+        points = np.concatenate(
+            [tube.points, (1.0 + gap + fin[:, :1]) * outward + fin[:, 1:2] * [0, 0, 1] + [0, 0, 0.07]]
+        )
+        rows = np.concatenate([tube.elements, rectangle(0.5, 0.9, (1, 2)).elements + len(tube.points)])
+        if sound:
+            assert len(Mesh(points, rows).parts) == 2
+        else:
+            refused(points, rows, "are not joined", "free edge of the second")
 
 
 def test_a_narrow_gap_is_allowed():

@@ -72,6 +72,19 @@ def test_blocks_around_a_corner_in_space():
     assert len(mesh.parts) == 1
 
 
+def test_blocks_that_meet_at_a_side_whichever_way_they_face():
+    """A fin on two plates, one of them upside down against the other."""
+    fin = [(1, 0, 0), (1, 1, 0), (1, 1, 1), (1, 0, 1)]
+    flat = [(*corner, 0) for corner in UNIT]
+    over = [(*corner, 0) for corner in NEXT][::-1]
+    mesh = blocks({"one": flat, "two": over, "fin": fin}, {"one": (2, 3), "two": (3, 3), "fin": (3, 1)})
+    assert area(mesh) == pytest.approx(3.0, rel=1e-12)
+    assert len(mesh.parts) == 1
+    at = np.abs(mesh.points[:, [0, 2]] - [1, 0]).max(axis=1) < 1e-9
+    for name in mesh.element_groups:
+        assert np.isin(np.flatnonzero(at), mesh.nodes_of(name)).all(), name
+
+
 def test_separate_blocks_are_separate_parts():
     mesh = blocks({"one": UNIT, "far": [(3, 0), (4, 0), (4, 1), (3, 1)]}, (2, 2))
     assert [part.tolist() for part in mesh.parts] == [[0, 1, 2, 3], [4, 5, 6, 7]]
@@ -98,14 +111,9 @@ def test_separate_blocks_are_separate_parts():
         ({"one": [(0, 0), (1, 0), (0.2, 0.2), (0, 1)]}, (2, 2), ["'one' is not convex", "corner 3"]),
         ({"one": [(0, 0), (1, 0), (1, 0), (0, 1)]}, (2, 2), ["'one' is not convex"]),
         (
-            {"floor": UNIT, "wall": [(1, 0, 0), (1, 1, 0), (1, 1, 1), (1, 0, 1)]},
-            (2, 2),
-            ["'floor' and 'wall'", "which side is up", "Reverse"],
-        ),
-        (
             {"one": UNIT, "two": NEXT, "fin": [(1, 0, 0), (1, 0, 1), (1, 1, 1), (1, 1, 0)]},
-            (2, 2),
-            ["'one' and 'two' and 'fin'", "at most two blocks"],
+            {"one": (2, 2), "two": (2, 2), "fin": (2, 3)},
+            ["'one' and 'fin'", "2 and 3", "equal"],
         ),
     ],
 )

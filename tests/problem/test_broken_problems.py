@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
-from problem_files import BLOCKS, LOADED, PUMP, STRIP, changed
+from problem_files import BLOCKS, LOADED, MIURA, PROFILE, PUMP, STRIP, changed
 
 from magshell.cli import main
 from problem.loaded import EVERY_LOAD
@@ -163,6 +163,18 @@ BROKEN = [
     Broken("divisions that do not match", "[mesh.blocks.two]", "[mesh.blocks.two]\nelements = [2, 3]", "mesh", ("'one'", "'two'", "1", "3"), BLOCKS),
     Broken("no blocks", BLOCKS[BLOCKS.index("[mesh.blocks.one]") : BLOCKS.index("[mesh.edge_groups]")], "[mesh.blocks]\n", "mesh.blocks", ("empty",), BLOCKS),
     Broken("disconnected block without support", '["10 mm", 0], ["20 mm", 0], ["20 mm", "5 mm"], ["10 mm", "5 mm"]', '["11 mm", 0], ["20 mm", 0], ["20 mm", "5 mm"], ["11 mm", "5 mm"]', "supports", ("part",), BLOCKS),
+    Broken("wall to no point", '["low", "knee"]', '["low", "kne"]', "mesh", ("'post'", "'kne'", "'knee'"), PROFILE),
+    Broken("wall between three points", '["low", "knee"]', '["low", "knee", "high"]', "mesh.walls.post.between", ("3 entries", "expected 2"), PROFILE),
+    Broken("wall to a number", '["low", "knee"]', '["low", 3]', "mesh.walls.post.between[1]", ("'3'", "name"), PROFILE),
+    Broken("point in space", 'knee = ["20 mm", 0]', 'knee = ["20 mm", 0, 0]', "mesh.points.knee", ("3 entries", "expected 2"), PROFILE),
+    Broken("point within a wall", 'high = ["20 mm", "8 mm"]', 'high = ["10 mm", 0]', "mesh", ("'high'", "within wall 'post'"), PROFILE),
+    Broken("no walls", PROFILE[PROFILE.index("post = {") : PROFILE.index("[shell]")], "", "mesh.walls", ("empty",), PROFILE),
+    Broken("too many walls", "elements = 4", "elements = 9999999", "mesh.walls.post.elements", ("whole number",), PROFILE),
+    Broken("sector of 90 degrees", '"60 deg"', '"90 deg"', "mesh", ("sector = 90", "between 0 and 90"), MIURA),
+    Broken("sector without a unit", '"60 deg"', "60", "mesh.sector", ("angle", "unit"), MIURA),
+    Broken("panels folded together", '"30 deg"', '"89.99 deg"', "mesh", ("lie on each other",), MIURA),
+    Broken("one side", '["10 mm", "8 mm"]', '["10 mm"]', "mesh.sides", ("1 entries", "expected 2"), MIURA),
+    Broken("too many cells", "cells = [1, 1]", "cells = [9000, 9000]", "mesh", ("elements",), MIURA),
     Broken("angle that goes back", '["0 deg", "90 deg"]', '["90 deg", "0 deg"]', "mesh", ("angle",), PUMP),
     Broken("angle in mm", '"90 deg"', '"90 mm"', "mesh.angle[1]", ("length", "angle"), PUMP),
     Broken("axis of zero length", "angle =", "axis = [0, 0, 0]\nangle =", "mesh.axis", ("zero vector",), PUMP),

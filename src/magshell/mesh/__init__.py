@@ -5,10 +5,12 @@ from __future__ import annotations
 from magshell.mesh.cuts import cut
 from magshell.mesh.drawings.polygons import polygon
 from magshell.mesh.drawings.reading import from_drawing
+from magshell.mesh.extrusion import profile
 from magshell.mesh.files import from_cad, read, write
 from magshell.mesh.generators import annulus, cylinder, rectangle, sphere_patch
 from magshell.mesh.mesh import Mesh
 from magshell.mesh.multiblock import blocks
+from magshell.mesh.origami import miura
 from magshell.mesh.solids.mid_surface import mid_surface
 from magshell.mesh.triangles import split, triangle_rows
 
@@ -21,7 +23,9 @@ __all__ = [
     "from_cad",
     "from_drawing",
     "mid_surface",
+    "miura",
     "polygon",
+    "profile",
     "read",
     "rectangle",
     "sphere_patch",

@@ -30,6 +30,22 @@ def divisions(generator: str, value: Sequence[int], name: str = "elements") -> t
     raise InputError(f"{generator}: {name} = {value!r} is not allowed; it must be two whole numbers, each at least 1.")
 
 
+def count(generator: str, name: str, value: int) -> int:
+    """A number of elements, at least 1."""
+    if isinstance(value, Integral) and not isinstance(value, bool) and value >= 1:
+        return int(value)
+    raise InputError(f"{generator}: {name} = {value!r} is not allowed; it must be a whole number, at least 1.")
+
+
+def angle(generator: str, name: str, value: float, least: float, greatest: float) -> float:
+    """An angle in degrees between two others, which are excluded."""
+    if isinstance(value, Real) and least < value < greatest:
+        return float(value)
+    raise InputError(
+        f"{generator}: {name} = {value!r} is not allowed; it must be between {least:g} and {greatest:g} degrees."
+    )
+
+
 def angles(generator: str, name: str, value: Sequence[float], elements: int) -> tuple[float, float]:
     """Start and stop in degrees, rising, at most 360 apart and at most 120 to an element."""
     start, stop = number_pair(generator, name, value)
@@ -60,6 +76,20 @@ def number_pair(generator: str, name: str, value: Sequence[float]) -> tuple[floa
     if not (math.isfinite(start) and math.isfinite(stop)):
         raise InputError(f"{generator}: {name} = {value!r} is not allowed; it must be two numbers, in degrees.")
     return start, stop
+
+
+def axes(
+    generator: str, axis: Sequence[float], name: str, across: Sequence[float]
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Right-handed unit vectors e1, e2, e3: e3 along the axis, e1 along what another direction has across it."""
+    e3, e1 = direction(generator, "axis", axis), direction(generator, name, across)
+    e1 = e1 - (e1 @ e3) * e3
+    if np.linalg.norm(e1) < 1e-6:
+        raise InputError(
+            f"{generator}: {name} = {across!r} lies along axis = {axis!r}; it must point away from the axis."
+        )
+    e1 /= np.linalg.norm(e1)
+    return e1, np.cross(e3, e1), e3
 
 
 def direction(generator: str, name: str, value: Sequence[float]) -> FloatArray:

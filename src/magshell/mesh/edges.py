@@ -53,6 +53,12 @@ class Edges(NamedTuple):
         one, other = np.concatenate(found, axis=1)
         return one, other
 
+    @property
+    def closed(self) -> bool:
+        """Whether every edge is walked as often one way as the other: the surface bounds a volume."""
+        sense = np.sign(self.sides[:, 1] - self.sides[:, 0])
+        return not np.bincount(self.edge_of_side, sense).any()
+
 
 def is_triangle(elements: IntArray) -> AnyArray:
     """Which rows (n, 8) are triangles: [a, b, c, c, ab, bc, c, ca]."""

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from magshell.errors import InputError
-from magshell.mesh.arguments import angles, direction, divisions, number_pair, positive, whole_turn
+from magshell.mesh.arguments import angles, axes, divisions, number_pair, positive, whole_turn
 from magshell.mesh.geometry import COINCIDENT
 from magshell.mesh.grid import grid
 from magshell.mesh.mesh import Mesh
@@ -140,19 +140,12 @@ def cylinder(
     radius, length = positive("cylinder", "radius", radius), positive("cylinder", "length", length)
     around, along = divisions("cylinder", elements)
     start, stop = angles("cylinder", "angle", angle, around)
-    e3, outward = direction("cylinder", "axis", axis), direction("cylinder", "zero", zero)
-    e1 = outward - (outward @ e3) * e3
-    if np.linalg.norm(e1) < 1e-6:
-        raise InputError(
-            f"cylinder: zero = {zero!r} lies along axis = {axis!r}; the direction of angle 0 must point "
-            "away from the axis."
-        )
-    e1 /= np.linalg.norm(e1)
+    e1, e2, e3 = axes("cylinder", axis, "zero", zero)
     whole = whole_turn(start, stop)
     pattern = grid(around, along, closed=0 if whole else None)
     turn = np.radians(start + (stop - start) * pattern.parameters[:, :1])
     height = length * pattern.parameters[:, 1:]
-    points = radius * (np.cos(turn) * e1 + np.sin(turn) * np.cross(e3, e1)) + height * e3
+    points = radius * (np.cos(turn) * e1 + np.sin(turn) * e2) + height * e3
     names = {"start": (1, 0.0), "end": (1, 1.0)}
     if not whole:
         names |= {"angle-start": (0, 0.0), "angle-stop": (0, 1.0)}

@@ -16,7 +16,7 @@ KINK = np.radians(30.0)
 
 
 class Line(NamedTuple):
-    """Edges in a row, between nodes where such edges end or branch."""
+    """Edges in a row, between nodes where such edges end, branch or come into another group."""
 
     edges: IntArray
     """(k, 3): end, end, middle, from one end of the line to the other."""
@@ -25,7 +25,7 @@ class Line(NamedTuple):
     angle: FloatArray
     """(2,): the least and the greatest angle along it by which the surface turns there, rad; 0 is smooth."""
     groups: tuple[str, ...]
-    """Names of the edge groups that have all of its edges."""
+    """Names of the edge groups that have its edges."""
 
     @property
     def nodes(self) -> IntArray:
@@ -68,20 +68,26 @@ def junctions_of(mesh: Mesh) -> Junctions:
 
 
 def _lines(mesh: Mesh, rows: IntArray, angle: FloatArray) -> list[Line]:
-    """Edges (k, 3) in lines; groups are those of whole lines."""
-    count = len(mesh.points)
-    named = {name: np.isin(edge_keys(rows, count), edge_keys(group, count)) for name, group in mesh.edge_groups.items()}
+    """Edges (k, 3) in lines, each of edges that are in the same groups."""
+    if not len(rows):
+        return []
+    count, keys = len(mesh.points), edge_keys(rows, len(mesh.points))
+    inside = [np.isin(keys, edge_keys(group, count)) for group in mesh.edge_groups.values()]
+    patterns, which = np.unique(np.array(inside, dtype=bool).reshape(-1, len(rows)).T, axis=0, return_inverse=True)
     lines = []
-    for order, against in _chains(rows, count):
-        walked = rows[order]
-        walked[against] = walked[against][:, [1, 0, 2]]
-        groups = tuple(name for name, inside in named.items() if inside[order].all())
-        bounds = np.array([angle[order].min(), angle[order].max()])
-        lines.append(Line(walked, bool(walked[0, 0] == walked[-1, 1]), bounds, groups))
+    for pattern, named in enumerate(patterns):
+        members = np.flatnonzero(which.ravel() == pattern)
+        groups = tuple(name for name, has in zip(mesh.edge_groups, named, strict=True) if has)
+        for chain, against in _chains(rows[members]):
+            order = members[chain]
+            walked = rows[order]
+            walked[against] = walked[against][:, [1, 0, 2]]
+            bounds = np.array([angle[order].min(), angle[order].max()])
+            lines.append(Line(walked, bool(walked[0, 0] == walked[-1, 1]), bounds, groups))
     return lines
 
 
-def _chains(rows: IntArray, count: int) -> list[tuple[IntArray, AnyArray]]:
+def _chains(rows: IntArray) -> list[tuple[IntArray, AnyArray]]:
     """Numbers of the edges of each chain in a row, and which of them are walked backwards.
 
     Chains end at nodes that have one edge or more than two; what is left are loops, from their first edge on.

@@ -24,10 +24,10 @@ from magshell.mesh.checks import (
     locked,
 )
 from magshell.mesh.edges import Edges, find_edges, is_triangle
-from magshell.mesh.geometry import COINCIDENT, check_shapes
+from magshell.mesh.geometry import COINCIDENT, centres, check_shapes, unit
 from magshell.mesh.ranges import Range, elements_between
 from magshell.mesh.unmatched import check_unmatched
-from magshell.mesh.wording import place
+from magshell.mesh.wording import listing, place
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -192,10 +192,13 @@ class Mesh:
     def node_at(self, point: Sequence[float] | FloatArray) -> int:
         """Number of the node at a position (3,), m, to within 1e-6 of the size of the mesh.
 
+        Of nodes that lie on each other at a cut it is that of the lip towards which the position is off the cut.
+
         Raises
         ------
         InputError
-            There is none; the message has the nearest node and its distance.
+            There is none, and the message has the nearest node and its distance; or several, which lie on each other at
+            a cut, and the position is on it.
         """
         target = np.asarray(point, dtype=np.float64)
         if target.shape != (3,) or not np.isfinite(target).all():
@@ -207,7 +210,20 @@ class Mesh:
                 f"There is no node at {place(target)}. The nearest is node {node} at "
                 f"{place(self.points[node])}, {distance[node]:.3g} m away."
             )
-        return node
+        several = np.flatnonzero(distance <= COINCIDENT * self.size)
+        return node if len(several) == 1 else self._on_lip(several, target)
+
+    def _on_lip(self, nodes: IntArray, target: FloatArray) -> int:
+        """Of nodes that lie on each other, the one whose elements lie where a position is off them."""
+        off = target - self.points[nodes[0]]
+        if np.linalg.norm(off) <= 1e-3 * COINCIDENT * self.size:
+            raise InputError(
+                f"Nodes {listing(nodes)} lie on each other at {place(target)}, on the lips of a cut: say which is "
+                f"meant by a position that is off the cut to its side, by less than {COINCIDENT * self.size:.1g} m."
+            )
+        middle = centres(self.points, self.elements)
+        towards = [middle[(self.elements == node).any(axis=1)].mean(axis=0) - self.points[node] for node in nodes]
+        return int(nodes[np.argmax(unit(np.array(towards)) @ off)])
 
     def select_edges(
         self, name: str, x1: float | None = None, x2: float | None = None, x3: float | None = None

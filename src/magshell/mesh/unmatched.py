@@ -12,6 +12,7 @@ from magshell.arrays import FloatArray, IntArray
 from magshell.errors import MeshError
 from magshell.mesh.edges import Edges, edge_keys
 from magshell.mesh.geometry import COINCIDENT, chord_lengths
+from magshell.mesh.resting import check_resting
 from magshell.mesh.wording import further, place
 
 ON_EDGE = 1e-3
@@ -24,7 +25,7 @@ Wide enough for a node on the true surface of an arc of 30 degrees, of which the
 def check_unmatched(
     points: FloatArray, elements: IntArray, edges: Edges, size: float, cuts: Mapping[str, IntArray]
 ) -> None:
-    """Refuse coincident nodes, and nodes on the free edge of an element that does not have them.
+    """Refuse coincident nodes, and nodes on an element that does not have them: on its free edges, or of free edges.
 
     Where both lie on one of the cuts, edges (k, 3) by name, they are meant; a cut where nothing does is refused.
     """
@@ -35,6 +36,7 @@ def check_unmatched(
     pairs = pairs[np.lexsort(pairs.T[::-1])]
     sides, nodes = _touching(points, elements, edges, size, tree)
     together, touching = np.zeros(len(pairs), dtype=bool), np.zeros(len(sides), dtype=bool)
+    on_any = np.zeros(len(points), dtype=bool)
     for name, rows in cuts.items():
         on_cut = np.zeros(len(points), dtype=bool)
         on_cut[rows] = True
@@ -47,7 +49,7 @@ def check_unmatched(
             raise MeshError(
                 f"Cut '{name}', from {place(points[rows[0, 0]])} on: no nodes lie on each other there, as {fault}."
             )
-        together, touching = together | own[0], touching | own[1]
+        together, touching, on_any = together | own[0], touching | own[1], on_any | on_cut
     if not together.all():
         one, other = pairs[~together][0]
         raise MeshError(
@@ -64,6 +66,7 @@ def check_unmatched(
             f"{ends[1]} without being a node of it. Divide both elements alike along that edge, or leave a "
             f"gap." + further(len(sides))
         )
+    check_resting(points, elements, edges, size, on_any)
 
 
 def coincident(points: FloatArray) -> IntArray:

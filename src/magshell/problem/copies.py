@@ -80,9 +80,10 @@ def _meshed(problem: Problem) -> tuple[dict[str, Any], bytes] | None:
         {name: rows for name, rows in every.items() if name not in own.get(key, {})}
         for key, every in zip(SELECTIONS, groups, strict=True)
     ]
+    elements, edges, nodes = kept
     name = f"{FOLDER}/{pathlib.Path(given.get('file', 'polygon')).stem}.msh"
     table = {**own, "file": name, "closed": True, **({"cuts": list(mesh.cuts)} if mesh.cuts else {})}
-    return table, msh(Mesh(mesh.points, mesh.elements, *kept, cuts=mesh.cuts), "m")
+    return table, msh(Mesh(mesh.points, mesh.elements, elements, edges, nodes, mesh.cuts), "m")
 
 
 def _name(source: pathlib.Path, content: bytes, copies: dict[str, bytes]) -> str:

@@ -226,6 +226,8 @@ Names = Annotated[tuple[Name, ...], BeforeValidator(_one_or_more)]
 Divisions = Annotated[tuple[Count, Count], _list_of(2, "numbers of elements in the two directions")]
 AngleRange = Annotated[tuple[Degrees, Degrees], _list_of(2, "first and last angle")]
 LengthRange = Annotated[tuple[Length, Length], _list_of(2, "least and greatest coordinate")]
+LengthPair = Annotated[tuple[PositiveLength, PositiveLength], _list_of(2, "lengths")]
+NamePair = Annotated[tuple[Name, Name], _list_of(2, "names of points")]
 Position = Annotated[tuple[Length, Length, Length], _list_of(3, "coordinates X1, X2, X3")]
 FluxVector = Annotated[
     tuple[FluxDensity, FluxDensity, FluxDensity],

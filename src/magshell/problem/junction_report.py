@@ -19,7 +19,11 @@ MOST_LINES = 4
 def lines(mesh: Mesh) -> Iterator[tuple[str, str]]:
     """Label and text of every line of the report."""
     found = junctions_of(mesh)
-    for label, each in (("kinks", found.kinks), ("joints", found.joints), ("normals change sign", found.flips)):
+    for label, each in (
+        ("kinks", found.kinks),
+        ("joints of three or more", found.joints),
+        ("normals change sign", found.flips),
+    ):
         if each:
             yield label, _said(mesh, each, angles=label == "kinks", groups=label != "normals change sign")
     if mesh.cuts:
@@ -41,7 +45,7 @@ def _said(mesh: Mesh, found: Sequence[Line], angles: bool, groups: bool) -> str:
 def _named(line: Line, groups: bool) -> str:
     if not groups:
         return ""
-    return f"{', '.join(line.groups)} " if line.groups else "without a name "
+    return f"{', '.join(line.groups)}, " if line.groups else "no group, "
 
 
 def _place(mesh: Mesh, line: Line) -> str:

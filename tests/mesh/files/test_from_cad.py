@@ -13,6 +13,7 @@ import pytest
 import magshell as ms
 from magshell.errors import InputError
 from magshell.mesh.files.session import DEBIAN, session
+from magshell.mesh.junctions import junctions_of
 from magshell.mesh.quality import worst
 
 from .same import described
@@ -245,3 +246,50 @@ def test_a_round_tip_has_no_bad_corners(size):
     assert tongue.triangles.mean() < 0.2
     cut = [change for change in tongue.origin.changes if "cut into triangles" in change]
     assert bool(cut) == tongue.triangles.any()
+
+
+RIB = """
+SetFactory("OpenCASCADE");
+Rectangle(1) = {0, 0, 0, 20, 10};
+Rectangle(2) = {0, 0, 0, 10, 5};
+Rotate {{1, 0, 0}, {0, 0, 0}, Pi/2} { Surface{2}; }
+Translate {5, 5, 0} { Surface{2}; }
+Coherence;
+Physical Surface("plate") = {1, 3};
+Physical Surface("rib") = {2};
+"""
+
+
+@needs_gmsh
+def test_a_rib_on_a_plate(tmp_path):
+    """Joined by gmsh along the foot of the rib; not joined, it is refused with the way out."""
+    file = tmp_path / "rib.geo"
+    file.write_text(RIB)
+    mesh = ms.mesh.from_cad(file, size=2.5e-3, unit="mm")
+    (joint,) = junctions_of(mesh).joints
+    assert len(mesh.parts) == 1
+    ends = mesh.points[[joint.edges[0, 0], joint.edges[-1, 1]]]
+    assert np.abs(np.sort(ends[:, 0]) - [5e-3, 15e-3]).max() < 1e-12
+    file.write_text(RIB.replace("Coherence;", "").replace("{1, 3}", "{1}"))
+    with pytest.raises(InputError, match=r"rib.geo: Elements \d+ and \d+ are not joined: node .*T-joint.*Coherence"):
+        ms.mesh.from_cad(file, size=2.5e-3, unit="mm")
+
+
+@needs_gmsh
+def test_a_box_with_a_wall_inside(tmp_path):
+    """From BREP, where faces that touch are joined by magshell; three sheets at each edge of the wall."""
+
+    def build(occ):
+        for z in (0, 5):
+            occ.addRectangle(0, 0, z, 20, 10)
+        for y in (0, 4, 10):
+            wall = occ.addRectangle(0, 0, 0, 20, 5)
+            occ.rotate([(2, wall)], 0, 0, 0, 1, 0, 0, np.pi / 2)
+            occ.translate([(2, wall)], 0, y, 0)
+
+    (file,) = made(tmp_path, ["box.brep"], build)
+    mesh = ms.mesh.from_cad(file, size=5e-3, unit="mm")
+    found = junctions_of(mesh)
+    assert len(mesh.parts) == 1
+    assert (len(found.kinks), len(found.joints)) == (4, 2)
+    assert all(abs(np.degrees(line.angle) - 90).max() < 1e-6 for line in found.kinks)

@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 
 import magshell as ms
 from magshell.mesh.files.session import session
+from magshell.mesh.junctions import junctions_of
 
 from .test_other_files import vtk_grid
 
@@ -17,11 +18,12 @@ needs_gmsh = pytest.mark.skipif(importlib.util.find_spec("gmsh") is None, reason
 
 
 def draw(gmsh, kind):
-    """A curved surface of two parts, with groups of every kind."""
+    """A curved surface of two parts and a fin along the curve between them, with groups of every kind."""
     occ = gmsh.model.occ
     bottom, top = (occ.addSpline([occ.addPoint(x, y, z) for x, z in ((0, 0), (7, 2), (20, 1))]) for y in (0, 5))
     far = occ.addSpline([occ.addPoint(x, 11, z) for x, z in ((0, 1), (9, 4), (20, 0))])
-    for one, other in ((bottom, top), (top, far)):
+    up = occ.addSpline([occ.addPoint(x, 6, z) for x, z in ((0, 6), (7, 8), (20, 7))])
+    for one, other in ((bottom, top), (top, far), (top, up)):
         occ.addThruSections([occ.addWire([one]), occ.addWire([other])], makeSolid=False)
     occ.removeAllDuplicates()
     occ.synchronize()
@@ -54,6 +56,7 @@ def test_one_mesh(kind, tmp_path):
             gmsh.write(str(tmp_path / file))
     read = {file: ms.mesh.read(tmp_path / file, unit="mm", second_order=True) for file in files}
     right = read.pop("part.msh")
+    assert len(junctions_of(right).joints) == 1
     for file, mesh in read.items():
         nodes = same_nodes(mesh, right, 2e-5 if file.endswith("bdf") else 1e-9)
         assert as_sets(nodes[mesh.elements]) == as_sets(right.elements), file

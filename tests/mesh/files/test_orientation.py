@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from bands import moebius
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import magshell as ms
-from magshell.errors import InputError
 from magshell.mesh import Mesh
 from magshell.mesh.files.orientation import TURNED_QUAD, TURNED_TRIANGLE, agreeing
+from magshell.mesh.junctions import junctions_of
 
 from .same import described, first_order
 
@@ -55,9 +56,59 @@ def test_triangles_and_separate_parts_are_turned_too():
     assert full[:, TURNED_TRIANGLE].tolist() == [[0, 2, 1, 1, 5, 4, 1, 3]]
 
 
-def test_a_moebius_band_is_refused():
+def test_a_moebius_band_keeps_one_line():
+    """Where normals change sign: one edge of the strip, whichever elements were turned in the file."""
     for turns in (0, 2):
-        assert agreeing(strip(turns)[1])[1] == 0
+        assert agreeing(strip(turns)[1])[1:] == (0, 0)
     for turns in (1, 3):
-        with pytest.raises(InputError, match="one side only, like a Möbius band"):
-            agreeing(strip(turns)[1])
+        _, rows = strip(turns)
+        as_written = agreeing(rows)
+        assert (as_written.rows == rows).all()
+        assert as_written[1:] == (0, 1)
+        rows[[2, 3, 7]] = rows[[2, 3, 7]][:, TURNED_QUAD]
+        turned = agreeing(rows)
+        assert turned.against == 1
+        assert turned.turned <= 6
+        assert np.sort(turned.rows, axis=1).tolist() == np.sort(rows, axis=1).tolist()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_wide_moebius_band_keeps_one_line_across_it(seed):
+    """Any elements of 12 × 3 turned: the edges at which normals change sign are one line from rim to rim."""
+    mesh = moebius(12, 3)
+    rows = mesh.elements.copy()
+    chosen = np.random.default_rng(seed).random(len(rows)) < 0.5
+    rows[chosen] = rows[chosen][:, TURNED_QUAD]
+    back, _, against = agreeing(rows)
+    (line,) = junctions_of(Mesh(mesh.points, back)).flips
+    assert len(line.edges) == against
+    rim = np.unique(mesh.boundary_edges)
+    assert np.isin([line.edges[0, 0], line.edges[-1, 1]], rim).all()
+    assert not np.isin(line.edges[1:, 0], rim).any()
+
+
+def test_a_moebius_band_is_read(tmp_path):
+    """Half of its elements turned: told, and as good as before."""
+    band = moebius(12, 2)
+    rows = band.elements.copy()
+    rows[::2] = rows[::2][:, TURNED_QUAD]
+    ms.mesh.write(Mesh(band.points, rows), tmp_path / "band.msh", "mm")
+    mesh = ms.mesh.read(tmp_path / "band.msh")
+    (line,) = junctions_of(mesh).flips
+    told = f"the surface has one side only: its normals change sign across {len(line.edges)} edges"
+    assert mesh.origin.changes[-1] == told
+
+
+def test_sheets_at_a_joint_are_turned_each_for_itself():
+    """A fin on a plate: neighbours across the joint of three need not agree, those within a sheet do."""
+    mesh = ms.mesh.profile(
+        {"a": (0, 0), "b": (1, 0), "c": (2, 0), "d": (1, 1)},
+        {"left": ("a", "b"), "right": ("b", "c"), "fin": ("b", "d")},
+        1.0,
+        (3, 2),
+    )
+    rows = mesh.elements.copy()
+    rows[[0, 7]] = rows[[0, 7]][:, TURNED_QUAD]
+    back, turned, against = agreeing(rows)
+    assert (turned, against) == (2, 0)
+    assert (back == mesh.elements).all()

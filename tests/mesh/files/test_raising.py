@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from bands import moebius
 
 import magshell as ms
 from magshell.mesh import Mesh
-from magshell.mesh.edges import SIDES
-from magshell.mesh.files.orientation import agreeing
+from magshell.mesh.edges import SIDES, edge_keys
+from magshell.mesh.files.orientation import TURNED_QUAD, agreeing
 from magshell.mesh.files.raising import raise_order
+from magshell.mesh.junctions import junctions_of
+from magshell.mesh.welding import weld
 
 from .same import first_order
 
@@ -90,13 +93,51 @@ def test_the_rim_of_a_tube_stays_in_its_plane():
     assert len(mesh.select_edges("rim", x3=0.0).edge_groups["rim"]) == 12
 
 
+def test_a_tube_with_a_wall_inside_and_a_fin_stays_round():
+    """Joints of three along the axis: their middles lie half-way on straight lines, those of the tube on the circle."""
+    tube = ms.mesh.cylinder(1, 1, (24, 4))
+    points = {"a": (-1, 0), "m": (0, 0), "b": (1, 0), "c": (2, 0)}
+    wall = ms.mesh.profile(points, {"west": ("a", "m"), "east": ("m", "b"), "fin": ("b", "c")}, 1.0, (3, 4))
+    both = np.concatenate([tube.points, wall.points])
+    rows = np.concatenate([tube.elements, wall.elements + len(tube.points)])
+    mesh = Mesh(*weld(both, rows, 1e-9))
+    assert len(junctions_of(mesh).joints) == 2
+    raised = raise_order(*first_order(mesh))
+    at = raised.rows[:96]
+    new = raised.points[np.unique(at[:, 4:])]
+    print(f"{off_cylinder(new).max():.2e}, chords {1 - np.cos(np.pi / 24):.2e}")
+    assert off_cylinder(new).max() < 0.03 * (1 - np.cos(np.pi / 24))
+    assert np.abs(raised.points[raised.rows[96:], 1]).max() < 1e-12
+
+
+def test_a_moebius_band_is_raised_across_its_line():
+    """Wherever its normals change sign: middles there are one-sided, with an error of second order."""
+    apart = []
+    for around in (32, 64):
+        points, rows = first_order(moebius(around, 4))
+        other = rows.copy()
+        quarter = np.arange(len(rows)).reshape(4, around)[:, : around // 4].ravel()
+        other[quarter] = other[quarter][:, TURNED_QUAD]
+        made, again = raise_order(points, rows), raise_order(points, other)
+        assert made.creases == again.creases == 0
+        middles = []
+        for each in (made, again):
+            sides = each.rows[:, SIDES].reshape(-1, 3)
+            _, first = np.unique(edge_keys(sides, len(points)), return_index=True)
+            middles.append(each.points[sides[first, 2]])
+            chords = np.linalg.norm(middles[-1] - points[sides[first, :2]].mean(axis=1), axis=1).max()
+        apart.append(np.linalg.norm(middles[0] - middles[1], axis=1).max())
+        print(f"{around}: {apart[-1]:.2e} apart, chords {chords:.2e}")
+    assert np.log2(apart[0] / apart[1]) > 2.5
+
+
 def test_a_tube_and_its_lid_share_their_circle():
     """At the crease between them: the middles of the edge are on the cylinder and in the plane of the lid."""
     tube, lid = first_order(ms.mesh.cylinder(1, 1, (24, 4))), first_order(ms.mesh.annulus(0.3, 1, (3, 24)))
     points = np.concatenate([tube[0], lid[0]])
     welded, place = np.unique(np.round(points, 9), axis=0, return_inverse=True)
     rows = np.concatenate([tube[1], np.where(lid[1] >= 0, lid[1] + len(tube[0]), -1)])
-    rows, turned = agreeing(np.where(rows >= 0, place.ravel()[rows], -1))
+    rows, turned, _ = agreeing(np.where(rows >= 0, place.ravel()[rows], -1))
     assert turned == 3 * 24
     raised = raise_order(welded, rows)
     assert raised.creases == 24

@@ -131,14 +131,11 @@ def _planes_of_free_edges(points: FloatArray, ends: IntArray, free: IntArray) ->
     Three nodes in a row have a plane, of four it must be the same one.
     """
     begin, end = ends[free, 0], ends[free, 1]
-    before, after = np.full(len(points), -1), np.full(len(points), -1)
-    before[end], after[begin] = begin, end
-    crowded = np.flatnonzero(np.bincount(begin, minlength=len(points)) > 1)
-    before[crowded] = after[crowded] = -1
+    before, after = _beyond(begin, end, begin), _beyond(begin, end, end)
     own = unit(points[end] - points[begin])
-    arriving, leaving = unit(points[begin] - points[before[begin]]), unit(points[after[end]] - points[end])
+    arriving, leaving = unit(points[begin] - points[before]), unit(points[after] - points[end])
     normals = []
-    for node, next_one in ((before[begin], arriving), (after[end], leaving)):
+    for node, next_one in ((before, arriving), (after, leaving)):
         smooth = (node >= 0) & ((next_one * own).sum(axis=1) > SHARP)
         normals.append(np.where(smooth[:, None], np.cross(own, next_one), 0.0))
     sizes = [np.linalg.norm(each, axis=1) for each in normals]
@@ -147,6 +144,14 @@ def _planes_of_free_edges(points: FloatArray, ends: IntArray, free: IntArray) ->
     same = np.linalg.norm(np.cross(first, second), axis=1) <= COPLANAR
     plane = np.where((sizes[0] > STRAIGHT)[:, None], first, second)
     return plane, np.where(both, same, (sizes[0] > STRAIGHT) | (sizes[1] > STRAIGHT))
+
+
+def _beyond(begin: IntArray, end: IntArray, at: IntArray) -> IntArray:
+    """The next node (k,) beyond the node `at` of each free side; -1 unless just one other side has it."""
+    sides, nodes = np.arange(len(begin)), np.concatenate([begin, end])
+    sharing, total = np.bincount(nodes), np.bincount(nodes, np.tile(sides, 2)).astype(np.int64)
+    other = np.where(sharing[at] == 2, total[at] - sides, sides)
+    return np.where(sharing[at] == 2, begin[other] + end[other] - at, -1)
 
 
 def _meeting(n1: FloatArray, n2: FloatArray, d1: FloatArray, d2: FloatArray) -> FloatArray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Collection
 from dataclasses import replace
@@ -12,6 +13,7 @@ from magshell.arrays import IntArray
 from magshell.errors import InputError
 from magshell.mesh.files.contents import Block, Contents
 from magshell.mesh.files.units import length_unit
+from magshell.mesh.geometry import COINCIDENT
 from magshell.mesh.unmatched import coincident
 from magshell.mesh.welding import merged
 
@@ -63,17 +65,18 @@ def welded(contents: Contents, tolerance: float, unit: str, cuts: Collection[str
 
 
 def ways_out(contents: Contents, unit: str) -> str:
-    """What to do about nodes that lie on each other: weld them, or name the group along which they do."""
+    """What to do about nodes that lie on each other: weld them, or name the groups along which they do."""
     nodes = coincident(contents.points)
     names = dict.fromkeys(name for block in _lines(contents) for name in block.groups)
-    found = [name for name in names if np.isin(_nodes(contents, name), nodes).any()]
+    along = [name for name in names if np.isin(_nodes(contents, name), nodes).mean() > 0.5]
+    said = along or ["NAME"]
+    named = "" if along else ", with the NAME of a group of edges along it"
     size = float(np.linalg.norm(np.ptp(contents.points, axis=0)))
-    reach = f"{float(f'{2e-6 * size:.0e}'):g} {unit}"
-    along = found or ["NAME"]
-    named = "" if found else ", with the NAME of a group of edges along it"
+    reach = f"{float(f'{2.0 * COINCIDENT * size:.0e}'):g} {unit}"
     return (
         f'If these are one node, weld = "{reach}" joins them (magshell mesh: --weld "{reach}"); if the surface is cut '
-        f'there, cuts = ["{along[0]}"] keeps them apart (--cut "{along[0]}"){named}.'
+        f"there, cuts = {json.dumps(said, ensure_ascii=False)} keeps them apart "
+        f"({' '.join(f'--cut {json.dumps(name, ensure_ascii=False)}' for name in said)}){named}."
     )
 
 

@@ -84,7 +84,7 @@ class Pressure(Load):
             elements,
             pressure * weights[:, None] * functions.values,
             np.asarray(functions.derivatives),
-            not find_edges(elements).boundary.size,
+            find_edges(elements).closed,
         )
 
     def words(self, shell: Shell, forces: FloatArray) -> str:

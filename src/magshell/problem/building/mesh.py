@@ -8,7 +8,7 @@ import re
 import numpy as np
 
 from magshell.errors import InputError
-from magshell.mesh import Mesh, annulus, blocks, cylinder, polygon, rectangle, sphere_patch
+from magshell.mesh import Mesh, annulus, blocks, cylinder, miura, polygon, profile, rectangle, sphere_patch
 from magshell.mesh.opening import Wishes, meshes, open_mesh
 from magshell.problem import schema
 from magshell.problem.building.located import at
@@ -83,6 +83,14 @@ def _generated(table: Generated) -> Mesh:
         case schema.SpherePatch():
             _bounded(table.elements)
             return sphere_patch(table.radius, table.polar, table.azimuth, table.elements)
+        case schema.Profile():
+            across = {**dict.fromkeys(table.walls, table.elements[0]), **table.divided}
+            _bounded(*((number, table.elements[1]) for number in across.values()))
+            walls = {name: wall.between for name, wall in table.walls.items()}
+            return profile(table.points, walls, table.length, table.elements, table.divided, table.axis, table.first)
+        case schema.Miura():
+            _bounded((2 * table.cells[0] * table.elements[0], 2 * table.cells[1] * table.elements[1]))
+            return miura(table.sides, table.sector, table.fold, table.cells, table.elements)
         case schema.Polygon():
             return polygon(table.corners, table.size, table.holes)
         case schema.Blocks():

@@ -29,11 +29,14 @@ from magshell.problem.schema.mesh import (
     Elements,
     Mesh,
     MeshFile,
+    Miura,
     Polygon,
+    Profile,
     Rectangle,
     Selection,
     SpherePatch,
     TheMesh,
+    Wall,
 )
 from magshell.problem.schema.region import LayerTable, RegionTable, ThicknessFile, ThicknessProfile
 from magshell.problem.schema.remanence import FoldTable, RemanenceTable
@@ -54,8 +57,10 @@ __all__ = [
     "MaterialTable",
     "Mesh",
     "MeshFile",
+    "Miura",
     "Polygon",
     "ProblemFile",
+    "Profile",
     "Rectangle",
     "RegionTable",
     "RemanenceTable",
@@ -70,6 +75,7 @@ __all__ = [
     "Table",
     "ThicknessFile",
     "ThicknessProfile",
+    "Wall",
     "load_tables",
     "material_tables",
     "problem_file",

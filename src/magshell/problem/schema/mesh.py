@@ -116,6 +116,41 @@ class SpherePatch(_Groups):
     elements: f.Divisions
 
 
+class Wall(Table):
+    """Straight wall of a profile between two of its points, itself an element group."""
+
+    between: f.NamePair
+    elements: f.Count | None = None
+
+
+class Profile(_Groups):
+    """Thin-walled cross-section, extruded; edge groups start, end and every point."""
+
+    generator: Literal["profile"]
+    points: Annotated[dict[f.Name, f.PlaneCorner], BeforeValidator(f.not_empty)]
+    walls: Annotated[dict[f.Name, Wall], BeforeValidator(f.not_empty)]
+    length: f.PositiveLength
+    elements: f.Divisions
+    axis: f.Direction = (0.0, 0.0, 1.0)
+    first: f.Direction = (1.0, 0.0, 0.0)
+
+    @property
+    def divided(self) -> dict[str, int]:
+        """Numbers of elements across the walls that say their own."""
+        return {name: wall.elements for name, wall in self.walls.items() if wall.elements is not None}
+
+
+class Miura(_Groups):
+    """Miura-ori in a folded state; edge groups mountain, valley, left, right, bottom, top."""
+
+    generator: Literal["miura"]
+    sides: f.LengthPair
+    sector: f.Degrees
+    fold: f.Degrees
+    cells: f.Divisions
+    elements: f.Divisions
+
+
 class Polygon(_Groups):
     """Polygon in the plane X1-X2 with holes, meshed by gmsh; edge groups side-1, side-2, ..., hole-1, ..."""
 
@@ -140,7 +175,7 @@ class MeshFile(_Groups):
     cuts: f.Names = ()
 
 
-Generated: TypeAlias = Rectangle | Annulus | Blocks | Cylinder | SpherePatch | Polygon
+Generated: TypeAlias = Rectangle | Annulus | Blocks | Cylinder | SpherePatch | Profile | Miura | Polygon
 Mesh: TypeAlias = Generated | MeshFile
 
 
