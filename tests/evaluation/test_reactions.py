@@ -28,7 +28,9 @@ def resolved(d, state, loading):
         assembly = d.assemble(Instant(state, loading))
         if assembly.worst[1] < 1e-13:
             break
-        state = d.moved(state, d.correction(make_solver("superlu").factorise(assembly.matrix).solve(assembly.right_side)))
+        state = d.moved(
+            state, d.correction(make_solver("superlu").factorise(assembly.matrix).solve(assembly.right_side))
+        )
     return state
 
 

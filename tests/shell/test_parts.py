@@ -54,7 +54,7 @@ def test_three_sections_meet_at_the_middle():
         d = body(parts)
         middle = np.flatnonzero(np.bincount(d.mesh.elements.ravel()) == 4)
         assert np.count_nonzero(d.rows.of == middle[0]) == 3
-        assert d.carried[d.rows.copies, 10].all()
+        assert d.carried[np.arange(d.rows.places, len(d.rows.of)), 10].all()
 
 
 @each_body

@@ -13,7 +13,7 @@ The thickness stretch φ is each row's own.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -57,6 +57,8 @@ class Rows(NamedTuple):
         Row of the rigid body that moves this one; -1 for none.
     points, normals : ndarray, shape (rows, 3)
         Undeformed position, m, and unit normal of the sheet; zero for bodies.
+    carriers : mapping of str to (places,) ndarray of bool
+        Which places have the fields u, w, phi and omega.
     joined : ndarray, shape (joints,)
         Mesh nodes at which a rotation carries the directors of several sheets.
     hinged : ndarray, shape (n,)
@@ -73,6 +75,7 @@ class Rows(NamedTuple):
     body: IntArray
     points: FloatArray
     normals: FloatArray
+    carriers: Mapping[str, AnyArray]
     joined: IntArray
     hinged: IntArray
 
@@ -85,15 +88,6 @@ class Rows(NamedTuple):
     def place(self) -> IntArray:
         """Mesh node or body (rows, 11) at which each unknown is."""
         return self.of[self.source]
-
-    @property
-    def carriers(self) -> dict[str, AnyArray]:
-        """Which places carry the fields u, w, phi and omega: boolean arrays (places,)."""
-        carriers: dict[str, AnyArray] = {}
-        for field in FRAME_OF_FIELD | {"phi": 3}:
-            carriers[field] = np.zeros(self.places, dtype=bool)
-            carriers[field][self.of[self.carried[:, COLUMNS[field].start]]] = True
-        return carriers
 
     def words(self, row: int) -> str:
         """The node or the rigid body of a row in messages."""
@@ -183,6 +177,7 @@ def rows_of(shell: Shell, bodies: Sequence[RigidBody] = (), planes: Sequence[Sym
         body=body,
         points=points,
         normals=_normals(shell, elements, of, sheet, planes),
+        carriers=_carriers(shell, kind, places),
         joined=np.unique(of[turned & inside]),
         hinged=np.unique(of[(piece != of) & inside]),
     )
@@ -296,6 +291,15 @@ def _carried(shell: Shell, elements: IntArray, of: IntArray, source: IntArray, k
         carried[:, PHI] = False
         carried[elements[soft, : shell.element.stretch_nodes], PHI] = True
     return carried
+
+
+def _carriers(shell: Shell, kind: IntArray, places: int) -> dict[str, AnyArray]:
+    """Fields of the places: at joints and on rigid bodies the directors follow the micro-rotation."""
+    bodies = places - len(shell.mesh.points)
+    own = {"u": True, "w": False, "phi": False, "omega": True}
+    carriers = {field: np.append(carries, np.full(bodies, own[field])) for field, carries in shell.carriers.items()}
+    carriers["w"] &= kind[:places] < TURNED
+    return carriers
 
 
 def _normals(

@@ -373,9 +373,8 @@ def _refuse_absent(places: Places, members: IntArray, condition: Condition) -> N
         raise InputError(f"{where}: a rigid body has no '{field}', only u and omega")
     if not places.carriers[field].any():
         raise InputError(f"{where}: no node of this shell carries '{field}'")
-    why = (
-        "is a joint, whose directors turn with omega" if places.carriers["omega"][members[0]] else "is a mid-side node"
-    )
+    joint = field == "w" and places.carriers["omega"][members[0]]
+    why = "is at a joint, where directors turn with omega," if joint else "is a mid-side node"
     raise InputError(f"{where}: node {members[0]} {why} and does not carry '{field}'")
 
 
