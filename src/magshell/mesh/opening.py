@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import os
 import pathlib
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from magshell.errors import InputError
-from magshell.mesh.cuts import cut
 from magshell.mesh.drawings.reading import READERS, from_drawing
 from magshell.mesh.files.assembling import FileMesh
 from magshell.mesh.files.cad import from_cad
 from magshell.mesh.files.paths import GEOMETRY
 from magshell.mesh.files.reading import read
+from magshell.mesh.files.seams import cut_open
 from magshell.mesh.solids.mid_surface import mid_surface
 
 DRAWINGS = tuple(READERS)
@@ -71,7 +71,7 @@ def open_mesh(file: str | os.PathLike[str], wishes: Wishes) -> FileMesh:
         What makes no sense for the file, by its key; or as `read`, `from_cad`, `from_drawing`, `mid_surface`.
     """
     if meshes(file, wishes):
-        return _cut(_meshed(file, wishes), wishes.cuts)
+        return _meshed(file, wishes)
     name = pathlib.Path(file).name
     for key in ("holes", "gap"):
         _only_if(not getattr(wishes, key), key, f"is for drawings ({', '.join(DRAWINGS)}), and {name} is none")
@@ -85,24 +85,17 @@ def _meshed(file: str | os.PathLike[str], wishes: Wishes) -> FileMesh:
     if suffix in DRAWINGS:
         for key in ("mid_surface", "second_order", "closed", "weld"):
             _only_if(not getattr(wishes, key), key, f"makes no sense for a drawing such as {name}")
-        return from_drawing(file, wishes.size, wishes.unit, wishes.holes, wishes.gap)
+        return from_drawing(file, wishes.size, wishes.unit, wishes.holes, wishes.gap, wishes.cuts)
     for key in ("holes", "gap"):
         _only_if(not getattr(wishes, key), key, f"is for drawings ({', '.join(DRAWINGS)}), and {name} is none")
     if wishes.mid_surface:
         for key in ("second_order", "closed", "weld"):
             _only_if(not getattr(wishes, key), key, "makes no sense with mid_surface")
-        return mid_surface(file, wishes.size, wishes.unit)
+        return cut_open(mid_surface(file, wishes.size, wishes.unit), wishes.cuts)
     _only_if(not wishes.second_order, "second_order", "is for meshes; a geometry is meshed to second order anyway")
     _only_if(wishes.weld is None, "weld", "is for meshes; the surfaces of a geometry share their edges")
-    return from_cad(file, wishes.size, wishes.unit, wishes.trust_script, wishes.closed)
-
-
-def _cut(mesh: FileMesh, cuts: tuple[str, ...]) -> FileMesh:
-    """A mesh cut open along edge groups, which it tells."""
-    made = cut(mesh, cuts)
-    doubled = len(made.points) - len(mesh.points)
-    changes = (*mesh.origin.changes, f"cut open along {' and '.join(cuts)}: {doubled} nodes doubled")
-    return replace(made, origin=replace(mesh.origin, changes=changes)) if cuts else mesh
+    mesh = from_cad(file, wishes.size, wishes.unit, wishes.trust_script, wishes.closed)
+    return cut_open(mesh, wishes.cuts)
 
 
 def _only_if(fine: bool, key: str, reason: str) -> None:

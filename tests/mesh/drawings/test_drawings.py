@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import magshell as ms
+from magshell.errors import InputError
 
 from .sheets import SQUARE, area, dxf, lines, needs_drawings, normals
 
@@ -24,6 +25,37 @@ def paddle(space, document):
     space.add_lwpolyline(corners, close=True, dxfattribs={"layer": "magnet"})
     space.add_line((0, 3), (0, 9), dxfattribs={"layer": "root"})
     space.add_text("part 7", dxfattribs={"layer": "notes"})
+
+
+def slit(space, document):
+    """A sheet with a slit inside, one in from the rim that another crosses, and a line beside the sheet."""
+    space.add_lwpolyline([(0, 0), (40, 0), (40, 20), (0, 20)], close=True, dxfattribs={"layer": "sheet"})
+    for one, other in (((4, 10), (10, 10)), ((20, 0), (20, 12)), ((16, 6), (26, 6)), ((50, 0), (50, 9))):
+        space.add_line(one, other, dxfattribs={"layer": "slit"})
+
+
+def test_a_layer_of_cuts(tmp_path):
+    """Kirigami: the lines are opened, but for their ends inside the sheet."""
+    file = dxf(tmp_path / "kirigami.dxf", slit)
+    mesh = ms.mesh.from_drawing(file, size=2e-3, cuts=["slit"])
+    assert mesh.cuts == ("slit",)
+    assert area(mesh) == pytest.approx(800e-6, rel=1e-12)
+    assert len(mesh.parts) == 1
+
+    def nodes_at(x, y):
+        return int((np.linalg.norm(mesh.points - [1e-3 * x, 1e-3 * y, 0], axis=1) < 1e-9).sum())
+
+    ends = [(4, 10), (10, 10), (20, 12), (16, 6), (26, 6)]
+    assert [nodes_at(*place) for place in (*ends, (20, 0), (20, 6))] == [1, 1, 1, 1, 1, 2, 4]
+    lips = mesh.edge_groups["slit"]
+    length = np.linalg.norm(mesh.points[lips[:, 1]] - mesh.points[lips[:, 0]], axis=1).sum()
+    assert length == pytest.approx(2 * (6 + 12 + 10) * 1e-3)
+    with pytest.raises(
+        InputError, match=r"layer 'slit': an outline is open: .* if the sheet is cut along it.*\[\"slit\"\]"
+    ):
+        ms.mesh.from_drawing(file, size=2e-3)
+    with pytest.raises(InputError, match="cuts: there is no edge group 'sheet'"):
+        ms.mesh.from_drawing(file, size=2e-3, cuts=["slit", "sheet"])
 
 
 def test_a_dxf_with_a_hole_and_layers(tmp_path):

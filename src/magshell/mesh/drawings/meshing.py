@@ -74,7 +74,11 @@ class _Pencil:
                 surfaces[number] = [pair for parts in made[begin : begin + len(own)] for pair in parts if pair[0] == 2]
                 begin += len(own)
         occ.synchronize()
-        loose = [pair for pair in self.gmsh.model.getEntities(1) if not len(self.gmsh.model.getAdjacencies(*pair)[0])]
+        model = self.gmsh.model
+        inside = {pair for face in model.getEntities(2) for pair in model.mesh.getEmbedded(*face)}
+        loose = [
+            pair for pair in model.getEntities(1) if pair not in inside and not len(model.getAdjacencies(*pair)[0])
+        ]
         if loose:
             occ.remove(loose, recursive=True)
             occ.synchronize()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, NoReturn
@@ -46,7 +47,7 @@ class Plan:
     edges : dict of str to list of Piece
         Named curves.
     marks : list of Chain
-        Lines on the outlines, at whose ends these are divided.
+        Lines on the outlines, at whose ends these are divided, and cuts.
     size, area : float
         Diagonal, mm, and area, mm².
     notes : tuple of str
@@ -60,11 +61,12 @@ class Plan:
     notes: tuple[str, ...]
 
 
-def planned(joined: Joined, holes: Sequence[str] | None) -> Plan:
+def planned(joined: Joined, holes: Sequence[str] | None, cuts: Sequence[str] = ()) -> Plan:
     """Sort outlines by what contains what.
 
     An outline inside of another on its own layer is a hole, and one inside of that is material again. On another layer
-    it is an area of its own, with the layer's name, or a hole if that layer is among `holes`.
+    it is an area of its own, with the layer's name, or a hole if that layer is among `holes`. Open lines lie on
+    outlines, or are on a layer among `cuts`.
 
     Raises
     ------
@@ -112,7 +114,7 @@ def planned(joined: Joined, holes: Sequence[str] | None) -> Plan:
         notes.append(
             f"outlines on {listed} inside of others: areas of the sheet (list the layer in `holes` to cut them)"
         )
-    marks = _marks(joined, outlines, notes)
+    marks = _marks(joined, outlines, cuts, notes)
     area = sum(
         (1.0 if solid[number] else -1.0) * polygons[number].area
         for number, parent in enumerate(parents)
@@ -209,8 +211,8 @@ def _cuts(hole: int, face: int, parents: list[int], solid: list[bool]) -> bool:
     return False
 
 
-def _marks(joined: Joined, outlines: list[Chain], notes: list[str]) -> list[Chain]:
-    """Open lines that lie on outlines; of layers of their own."""
+def _marks(joined: Joined, outlines: list[Chain], cuts: Sequence[str], notes: list[str]) -> list[Chain]:
+    """Open lines that lie on outlines, and cuts; of layers of their own."""
     from shapely import LineString, MultiLineString
 
     if not joined.open:
@@ -218,8 +220,8 @@ def _marks(joined: Joined, outlines: list[Chain], notes: list[str]) -> list[Chai
     borders = MultiLineString([chain.fine() for chain in outlines]).buffer(max(NEAR * joined.size, joined.gap))
     marks = []
     for chain in joined.open:
-        if not borders.contains(LineString(chain.fine())):
-            _refuse_open(joined, chain)
+        if chain.layer not in cuts and not borders.contains(LineString(chain.fine())):
+            _refuse_open(joined, chain, cut=True)
         if any(chain.layer == outline.layer for outline in outlines):
             notes.append(f"layer '{chain.layer}': a line on an outline of its own layer left out")
         else:
@@ -227,8 +229,8 @@ def _marks(joined: Joined, outlines: list[Chain], notes: list[str]) -> list[Chai
     return marks
 
 
-def _refuse_open(joined: Joined, chain: Chain) -> NoReturn:
-    """Say where a line ends, and what is nearest to its end."""
+def _refuse_open(joined: Joined, chain: Chain, cut: bool = False) -> NoReturn:
+    """Say where a line ends, and what is nearest to its end; and whether it may be a cut."""
     ends = np.array([end for other in joined.open for end in (other.begin, other.end)])
     distance = np.linalg.norm(ends - chain.end, axis=1)
     distance[[2 * number + 1 for number, other in enumerate(joined.open) if other is chain]] = np.inf
@@ -236,6 +238,10 @@ def _refuse_open(joined: Joined, chain: Chain) -> NoReturn:
     advice = "Close it"
     if gap < WIDEST * joined.size:
         advice += f', or let gaps be closed: gap = "{gap:.2g} mm" reaches to the nearest other end'
+    if cut:
+        advice += (
+            f"; if the sheet is cut along it, name its layer: cuts = [{json.dumps(chain.layer, ensure_ascii=False)}]"
+        )
     raise InputError(
         f"layer '{chain.layer}': an outline is open: it begins at ({begin[0]:.6g}, {begin[1]:.6g}) and ends at "
         f"({end[0]:.6g}, {end[1]:.6g}) mm. {advice}"

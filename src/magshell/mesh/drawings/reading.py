@@ -21,6 +21,7 @@ from magshell.mesh.files.apart import apart
 from magshell.mesh.files.assembling import FileMesh
 from magshell.mesh.files.cad import DEFAULT_ELEMENTS
 from magshell.mesh.files.paths import readable
+from magshell.mesh.files.seams import cut_open
 from magshell.mesh.files.session import required
 from magshell.mesh.files.units import length_unit
 
@@ -41,6 +42,7 @@ def from_drawing(
     unit: str | None = None,
     holes: Sequence[str] | None = None,
     gap: float | None = None,
+    cuts: Sequence[str] = (),
 ) -> FileMesh:
     """Mesh the outlines of a flat drawing with gmsh (the extra `magshell[drawings]`).
 
@@ -59,6 +61,8 @@ def from_drawing(
         Layers whose outlines are holes, wherever they are.
     gap : float, optional
         Ends of lines closer than this are joined, m; without it 1e-4 of the size of the drawing.
+    cuts : sequence of str
+        Edge groups along which the sheet is cut open: layers of lines inside of the outlines, or on them.
 
     Returns
     -------
@@ -71,7 +75,7 @@ def from_drawing(
     ------
     InputError
         gmsh, or what reads the file, is not there; no such file; no unit; lines that are no outline, with layer and
-        place.
+        place; no edge group to cut along.
     """
     path, name = pathlib.Path(file), pathlib.Path(file).name
     suffix = path.suffix.lower()
@@ -90,14 +94,15 @@ def from_drawing(
         drawing = reader(path, name)
     pieces, told = _in_millimetres(drawing, unit, name)
     try:
-        plan = planned(Joined(pieces, None if gap is None else 1e3 * gap), holes)
+        plan = planned(Joined(pieces, None if gap is None else 1e3 * gap), holes, cuts)
     except InputError as error:
         said = f"; {drawing.notes[0]}" if drawing.notes and not pieces else ""
         raise InputError(f"{name}: {error}{said}") from None
     mesh = meshed(plan, name, size)
     if curves := sum(not (piece.line or piece.arc) for piece in pieces):
         told += f"; {curves} splines and other curves followed to within {FOLLOWED * plan.size:.2g} mm"
-    return replace(mesh, origin=replace(mesh.origin, changes=(told, *drawing.notes, *mesh.origin.changes)))
+    mesh = replace(mesh, origin=replace(mesh.origin, changes=(told, *drawing.notes, *mesh.origin.changes)))
+    return cut_open(mesh, cuts)
 
 
 def meshed(plan: Plan, name: str, size: float | None) -> FileMesh:

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from magshell.arrays import IntArray
 from magshell.errors import InputError
+from magshell.mesh.cuts import cut
+from magshell.mesh.files.assembling import FileMesh
 from magshell.mesh.files.contents import Block, Contents
 from magshell.mesh.files.units import length_unit
 from magshell.mesh.geometry import COINCIDENT
@@ -62,6 +64,22 @@ def welded(contents: Contents, tolerance: float, unit: str, cuts: Collection[str
         node_groups={name: np.unique(number[nodes]) for name, nodes in contents.node_groups.items()},
         notes=(*contents.notes, f"{what} within {reach:.6g} {unit}"),
     )
+
+
+def cut_open(mesh: FileMesh, cuts: Sequence[str]) -> FileMesh:
+    """A mesh that gmsh made, cut open along edge groups, which its origin tells.
+
+    Raises
+    ------
+    InputError
+        As `magshell.mesh.cut`.
+    """
+    names = (cuts,) if isinstance(cuts, str) else tuple(cuts)
+    if not names:
+        return mesh
+    made = cut(mesh, names)
+    told = f"cut open along {' and '.join(names)}: {len(made.points) - len(mesh.points)} nodes doubled"
+    return replace(made, origin=replace(mesh.origin, changes=(*mesh.origin.changes, told)))
 
 
 def ways_out(contents: Contents, unit: str) -> str:
