@@ -168,16 +168,15 @@ class Unsupported:
     loads: tuple = ()
     local_axis: tuple = (1.0, 0.0, 0.0)
     outputs: tuple = ()
-    rigid: tuple = ()
     springs: tuple = ()
 
     @cached_property
     def rows(self):
-        return rows_of(self.shell, self.rigid)
+        return rows_of(self.shell)
 
     @cached_property
     def places(self):
-        return Places(self.shell.mesh, self.rows.carriers, self.rigid)
+        return Places(self.shell.mesh, self.rows.carriers, self.shell.rigid)
 
     @cached_property
     def constraints(self):

@@ -29,13 +29,15 @@ if TYPE_CHECKING:
         composite,
     )
     from magshell.model import thickness
+    from magshell.model.hinge import Hinge
     from magshell.model.loads import Force, Gravity, Moment, Pressure, Traction
     from magshell.model.model import Model
     from magshell.model.region import Layer, Region
+    from magshell.model.rigid_body import RigidBody
     from magshell.model.shell import Shell
     from magshell.model.springs import Spring
     from magshell.model.stages import Stage
-    from magshell.model.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane
+    from magshell.model.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane, Turn
     from magshell.solver import CriticalPoint, Observer, Path, Settings, SolveError, Step, resume, solve
     from magshell.solver.buckling import Buckling, BucklingMode, buckling
 
@@ -63,7 +65,9 @@ _HOME = {
     "magshell.solver.buckling": ("Buckling", "BucklingMode", "buckling"),
     "magshell.model.springs": ("Spring",),
     "magshell.model.stages": ("Stage",),
-    "magshell.model.supports": ("Clamp", "Prescribe", "SimpleSupport", "SymmetryPlane"),
+    "magshell.model.hinge": ("Hinge",),
+    "magshell.model.rigid_body": ("RigidBody",),
+    "magshell.model.supports": ("Clamp", "Prescribe", "SimpleSupport", "SymmetryPlane", "Turn"),
 }
 _MODULES = {
     "mesh": "magshell.mesh",
@@ -82,6 +86,7 @@ __all__ = [
     "DeformationGradientEnergy",
     "Force",
     "Gravity",
+    "Hinge",
     "InputError",
     "Layer",
     "MeshError",
@@ -99,6 +104,7 @@ __all__ = [
     "Prescribe",
     "Pressure",
     "Region",
+    "RigidBody",
     "Settings",
     "Shell",
     "SimpleSupport",
@@ -108,6 +114,7 @@ __all__ = [
     "Step",
     "SymmetryPlane",
     "Traction",
+    "Turn",
     "UniformField",
     "buckling",
     "composite",

@@ -73,8 +73,9 @@ def jointed(mesh: Mesh, element=QUADRATIC, coupling=None, hinges=(), rigid=(), *
         remanence.per_element(np.tile(REMANENCE, (len(mesh.elements), 1))),
         element=element,
         hinges=hinges,
+        rigid=rigid,
     )
-    body = Unsupported(shell, UniformField(FIELD), coupling or example(COUPLING), rigid=tuple(rigid), **given)
+    body = Unsupported(shell, UniformField(FIELD), coupling or example(COUPLING), **given)
     return Discretisation(body, lambda graph: np.arange(graph.shape[0]))
 
 

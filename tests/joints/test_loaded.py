@@ -40,9 +40,9 @@ def solved(lines, rigid, loads, supports=()):
     mesh = extruded(lines)
     magnets = ms.remanence.per_element(np.tile((0.5, 0.1, 0.2), (len(mesh.elements), 1)))
     rubber = ms.MicropolarNeoHookean(1.0, 1.7, length_scale=0.03)
-    shell = ms.Shell(mesh, 0.1, rubber, magnets, density=1.0)
+    shell = ms.Shell(mesh, 0.1, rubber, magnets, density=1.0, rigid=rigid)
     field, held = ms.UniformField((1e-9, 2e-9, -3e-9)), [ms.Clamp("near"), *supports]
-    model = ms.Model(shell, held, field, loads=loads, rigid=rigid)
+    model = ms.Model(shell, held, field, loads=loads)
     return solve(model, Settings(tolerance=1e-12))
 
 

@@ -11,6 +11,7 @@ import scipy.sparse as sp
 
 from magshell.arrays import FloatArray
 from magshell.equations.dependence import Dependence
+from magshell.equations.dipoles import DipoleTerm
 from magshell.equations.frames import to_frames, to_global
 from magshell.equations.insertion import Insertion
 from magshell.equations.instant import STATIC, Increment, Instant, Prediction
@@ -20,6 +21,8 @@ from magshell.equations.shell import ShellTerm
 from magshell.equations.springs import SpringTerm
 from magshell.equations.term import Term, squares_by_kind
 from magshell.model.course import Loading
+from magshell.model.dipole import dipoles_of
+from magshell.model.hinge_springs import hinge_springs
 from magshell.model.model import Model
 from magshell.model.reference import make_of, reference_of_model, stiffest_of
 from magshell.openblas import allocate_buffers
@@ -73,7 +76,8 @@ class Discretisation:
         Free unknowns.
     shell : ShellTerm
     loads : LoadTerm
-    springs : SpringTerm
+    springs, hinges : SpringTerm
+    dipoles : DipoleTerm
     terms : sequence of Term
         Those that there are.
     reference : Reference
@@ -95,8 +99,13 @@ class Discretisation:
         self.shell = ShellTerm(self.reference, len(self.rows.of), stiffest_of(make))
         self.loads = LoadTerm(model.applied, model.constraints)
         self.springs = SpringTerm(model.elastic, model.constraints)
-        used = ((self.loads, model.applied), (self.springs, model.elastic))
-        self.terms: Sequence[Term] = (self.shell, *(term for term, users in used if users))
+        hinges, dipoles = hinge_springs(model.shell, self.rows), dipoles_of(model.shell)
+        self.hinges = SpringTerm(hinges, model.constraints)
+        self.dipoles = DipoleTerm(dipoles, model.constraints)
+        nodal = (self.loads, self.springs, self.hinges, self.dipoles)
+        users = (model.applied, model.elastic, hinges, dipoles)
+        self._nodal = [term for term, some in zip(nodal, users, strict=True) if some]
+        self.terms: Sequence[Term] = (self.shell, *self._nodal)
         self.carried = self.rows.carried
         self.free = self.carried & ~model.constraints.fixed
         cliques = [clique for term in self.terms for clique in term.couplings()]
@@ -106,8 +115,8 @@ class Discretisation:
         self.dofs = self.numbering.dofs
         self._insertion = Insertion(self.numbering, model.constraints)
         self.shell.place(self.numbering, model.constraints)
-        self.loads.place(self._insertion, self.dependence)
-        self.springs.place(self._insertion, self.dependence)
+        for term in nodal:
+            term.place(self._insertion, self.dependence)
         self._noise = _sum(term.noise() for term in self.terms)
 
     @property
@@ -150,6 +159,13 @@ class Discretisation:
         inner = max(part.inner for part in parts)
         matrix = self._insertion.matrix if tangent else None
         return Assembly(matrix, right_side, residual, self._relative(residual, squares, inner))
+
+    def from_nodes(self, instant: Instant) -> FloatArray:
+        """Residual (rows, 11) of what acts at the nodes: loads, springs and magnets of rigid bodies."""
+        total = np.zeros((len(self.rows.of), COMPONENTS))
+        for term in self._nodal:
+            total += term.evaluate(instant, STATIC, None, None).residual
+        return self.rows.folded(total)
 
     def load_direction(self, instant: Instant, rate: Loading, assembly: Assembly) -> FloatArray:
         """Right side (dofs,) of the tangent for the increment of the unknowns per load factor.

@@ -107,7 +107,7 @@ class LoadTerm:
 
     def load_rate(self, instant: Instant, rate: Loading) -> FloatArray:
         """See `Term`."""
-        forces = self.forces(instant.state, rate.loads)
+        forces = self.forces(instant.state, self._amplitudes(rate))
         gathered = self._dependence.gathered(forces, self._dependence.levers(instant.state))
         return -to_frames(self._constraints, gathered)
 

@@ -70,13 +70,16 @@ def largest_imbalances(balances: Sequence[Balance]) -> tuple[float, float]:
     return force, moment
 
 
-def magnetic_torque(discretisation: Discretisation, state: State, flux_density: FloatArray) -> tuple[FloatArray, float]:
-    """Total torque of the field (3,), N m, and the integral of its magnitude."""
+def magnetic_torque(discretisation: Discretisation, state: State, loading: Loading) -> tuple[FloatArray, float]:
+    """Total torque of the field (3,), N m, on shell and magnets, and the integral of its magnitude."""
+    flux_density = loading.flux_density
     reference = discretisation.reference
     fields = evaluate(reference, state, level_stretch(reference, state, flux_density))
     forces = of_couplings(reference, discretisation.couplings, fields, flux_density)
     torque = points.magnetic_torque(reference, fields, forces) * reference.geometry.volume[..., None]
-    return torque.sum(axis=(0, 1, 2)), float(np.linalg.norm(torque, axis=-1).sum())
+    magnets = discretisation.dipoles.torques(state, loading)
+    magnitude = float(np.linalg.norm(torque, axis=-1).sum() + np.linalg.norm(magnets, axis=-1).sum())
+    return torque.sum(axis=(0, 1, 2)) + magnets.sum(axis=0), magnitude
 
 
 def balance(discretisation: Discretisation, state: State, loading: Loading, residual: FloatArray) -> Balance:
@@ -96,7 +99,7 @@ def balance(discretisation: Discretisation, state: State, loading: Loading, resi
     director = discretisation.rows.normals + state.w
     moments = cross(position, reaction[:, :3]) + cross(director, reaction[:, 3:6]) + reaction[:, COLUMNS["omega"]]
     load_moments = cross(position, load[:, :3]) + cross(director, load[:, 3:6]) + load[:, COLUMNS["omega"]]
-    torque, torque_scale = magnetic_torque(discretisation, state, loading.flux_density)
+    torque, torque_scale = magnetic_torque(discretisation, state, loading)
     force_sum, load_sum = reaction[:, :3].sum(axis=0), load[:, :3].sum(axis=0)
     moment_sum, load_moment_sum = moments.sum(axis=0), load_moments.sum(axis=0)
     force_scale = _sum_of_magnitudes(reaction[:, :3]) + _sum_of_magnitudes(load[:, :3])

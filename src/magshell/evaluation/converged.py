@@ -21,6 +21,7 @@ from magshell.model.course import Loading
 from magshell.shell import rotation
 from magshell.shell.point import INTERNAL
 from magshell.shell.state import State
+from magshell.shell.unknowns import COLUMNS
 
 
 class Converged:
@@ -71,7 +72,7 @@ class Converged:
     @property
     def spring_energy(self) -> float:
         """Energy of all springs, J."""
-        return self.discretisation.springs.energy(self.state)
+        return self.discretisation.springs.energy(self.state) + self.discretisation.hinges.energy(self.state)
 
     @cached_property
     def reactions(self) -> list[Reaction]:
@@ -83,7 +84,23 @@ class Converged:
         """Total torque of the field (3,), N m."""
         if self.balance is not None:
             return self.balance.magnetic_torque
-        return magnetic_torque(self.discretisation, self.state, self.loading.flux_density)[0]
+        return magnetic_torque(self.discretisation, self.state, self.loading)[0]
+
+    @property
+    def body_motions(self) -> FloatArray:
+        """Displacement and rotation vector of each rigid body (bodies, 2, 3), m and rad."""
+        bodies = slice(self.discretisation.rows.nodes, self.discretisation.rows.places)
+        return np.stack([self.state.u[bodies], rotation.logarithm(self.state.q[bodies])], axis=1)
+
+    @property
+    def body_forces(self) -> FloatArray:
+        """Force and moment that each rigid body exerts on the shell (bodies, 2, 3), N and N m."""
+        rows, d = self.discretisation.rows, self.discretisation
+        if rows.places == rows.nodes:
+            return np.zeros((0, 2, 3))
+        of_nodes = d.from_nodes(Instant(self.state, self.loading))
+        forces = d.to_global(self.assembly.residual - of_nodes)[rows.nodes : rows.places]
+        return np.stack([forces[:, COLUMNS["u"]], forces[:, COLUMNS["omega"]]], axis=1)
 
     @cached_property
     def acting(self) -> Acting:

@@ -119,8 +119,24 @@ SERIES: dict[str, Series] = {
             "energy of springs",
             "J",
             "Energy of all springs (`springs`), if there are any.",
-            lambda model: ["springs"] if model.springs else [],
-            lambda converged: [converged.spring_energy] if converged.discretisation.model.springs else [],
+            lambda model: ["springs"] if _has_springs(model) else [],
+            lambda converged: [converged.spring_energy] if _has_springs(converged.discretisation.model) else [],
+        ),
+        Series(
+            "motion of rigid bodies",
+            "",
+            "Displacement of the reference point of a rigid body (`NAME.u1`, `u2`, `u3`, m) and its rotation vector, of "
+            "magnitude at most π (`NAME.theta1`, `theta2`, `theta3`, rad).",
+            lambda model: _of_bodies(model, "u", "theta"),
+            lambda converged: [number for motion in converged.body_motions for number in motion.ravel().tolist()],
+        ),
+        Series(
+            "force of rigid bodies",
+            "",
+            "Force that a rigid body exerts on the shell (`NAME.F1`, `F2`, `F3`, N), and moment about its reference "
+            "point (`NAME.T1`, `T2`, `T3`, N m).",
+            lambda model: _of_bodies(model, "F", "T"),
+            lambda converged: [number for force in converged.body_forces for number in force.ravel().tolist()],
         ),
     )
 }

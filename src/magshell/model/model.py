@@ -25,12 +25,11 @@ from magshell.model.named_supports import NamedSupport, named_supports
 from magshell.model.parts import REST, Part
 from magshell.model.places import Places
 from magshell.model.rigid import check_supported
-from magshell.model.rigid_body import RigidBody
 from magshell.model.rows import Rows, rows_of
 from magshell.model.shell import Shell
-from magshell.model.springs import Elastic, Spring, check_names, reaction_name
+from magshell.model.springs import Anchored, Spring, check_names, reaction_name
 from magshell.model.stages import Stage
-from magshell.model.supports import Constraints, Support, SymmetryPlane, resolve
+from magshell.model.supports import Constraints, Support, SymmetryPlane, resolve, turned_bodies
 from magshell.multipliers import amplitudes
 from magshell.shell.state import State
 
@@ -62,8 +61,6 @@ class Model:
         resultants.
     outputs : sequence of str, optional
         Outputs of `magshell.evaluation.outputs` that files and pages hold beside those that they always do.
-    rigid : sequence of RigidBody, optional
-        Groups of the shell that move as rigid bodies.
     springs : sequence of Spring, optional
         Elastic supports.
 
@@ -75,7 +72,7 @@ class Model:
         The supports, row by row.
     applied : tuple of Applied
         The loads, node by node.
-    elastic : tuple of Elastic
+    elastic : tuple of Anchored
         The springs, node by node.
     probe_nodes : mapping of str to int
     named_supports : tuple of NamedSupport
@@ -97,12 +94,11 @@ class Model:
     stages: Sequence[Stage] = ()
     local_axis: ArrayLike = (1.0, 0.0, 0.0)
     outputs: Sequence[str] = ()
-    rigid: Sequence[RigidBody] = ()
     springs: Sequence[Spring] = ()
     rows: Rows = dataclasses.field(init=False, repr=False)
     constraints: Constraints = dataclasses.field(init=False, repr=False)
     applied: tuple[Applied, ...] = dataclasses.field(init=False, repr=False)
-    elastic: tuple[Elastic, ...] = dataclasses.field(init=False, repr=False)
+    elastic: tuple[Anchored, ...] = dataclasses.field(init=False, repr=False)
     probe_nodes: Mapping[str, int] = dataclasses.field(init=False, repr=False)
     named_supports: tuple[NamedSupport, ...] = dataclasses.field(init=False, repr=False)
     _ends: tuple[Amounts, ...] = dataclasses.field(init=False, repr=False)
@@ -114,13 +110,15 @@ class Model:
             put(self, "coupling", MicropolarCouple() if self.shell.micro_rotation else DeformationGradientEnergy())
         put(self, "supports", tuple(self.supports))
         put(self, "loads", tuple(self.loads))
+        bodies = turned_bodies(self.shell.rigid, self.supports)
+        if len(bodies) > len(self.shell.rigid):
+            put(self, "shell", dataclasses.replace(self.shell, rigid=bodies))
         put(self, "stages", tuple(self.stages) or (Stage(),) * self._longest_history())
         put(self, "local_axis", _direction("local_axis", self.local_axis))
         put(self, "outputs", tuple(self.outputs))
-        put(self, "rigid", tuple(self.rigid))
         planes = [support for support in self.supports if isinstance(support, SymmetryPlane)]
-        put(self, "rows", rows_of(self.shell, self.rigid, planes))
-        places = Places(mesh, self.rows.carriers, tuple(self.rigid))
+        put(self, "rows", rows_of(self.shell, planes))
+        places = Places(mesh, self.rows.carriers, tuple(self.shell.rigid))
         constraints = resolve(places, self.supports, len(self.stages))
         put(self, "constraints", self.rows.constraints(constraints))
         put(self, "named_supports", named_supports(self.shell, places, self.supports))
@@ -202,7 +200,7 @@ class Model:
         otherwise = "and no support moves, nor is there a load: nothing loads the shell"
         if not any(amounts.field * self.field.magnitude for amounts in self._ends):
             raise NothingLoads(f"field: flux_density is zero {otherwise}")
-        if not self.shell.magnetised:
+        if not self.shell.magnetised and not any(np.any(body.moment) for body in self.shell.rigid):
             raise NothingLoads(f"remanence: it is zero everywhere {otherwise}")
 
     @cached_property

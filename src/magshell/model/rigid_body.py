@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -73,7 +74,7 @@ class RigidBody:
         return np.asarray(self.point)
 
 
-def members_of(mesh: Mesh, bodies: tuple[RigidBody, ...]) -> IntArray:
+def members_of(mesh: Mesh, bodies: Sequence[RigidBody]) -> IntArray:
     """Number of the body that each node of a mesh belongs to, -1 for none.
 
     Raises

@@ -137,17 +137,17 @@ class _Table:
         return row
 
 
-def rows_of(shell: Shell, bodies: Sequence[RigidBody] = (), planes: Sequence[SymmetryPlane] = ()) -> Rows:
-    """The rows of a shell with rigid bodies; on mirror planes normals lie in the plane.
+def rows_of(shell: Shell, planes: Sequence[SymmetryPlane] = ()) -> Rows:
+    """The rows of a shell; on mirror planes normals lie in the plane.
 
     Raises
     ------
     InputError
         Sheets meet in a shell without micro-rotation; a hinge or a rigid body does not fit the mesh.
     """
-    mesh, nodes = shell.mesh, len(shell.mesh.points)
+    mesh, nodes, bodies = shell.mesh, len(shell.mesh.points), shell.rigid
     places, sheets = nodes + len(bodies), sheets_of(mesh, shell.hinges)
-    owner = members_of(mesh, tuple(bodies))
+    owner = members_of(mesh, bodies)
     elements, table = _numbered(shell, sheets, places)
     of, piece, sheet = (np.array(one) for one in (table.of, table.piece, table.sheet))
     several = np.zeros(len(of), dtype=bool)
@@ -310,4 +310,4 @@ def _normals(
     np.add.at(total, sheet[elements].ravel(), corner_normals(shell.mesh.points, shell.mesh.elements).reshape(-1, 3))
     length = np.linalg.norm(total, axis=1, keepdims=True)
     normals = np.divide(total, length, out=np.zeros_like(total), where=length > 0.0)[sheet]
-    return in_mirror_planes(normals, [(np.isin(of, shell.mesh.nodes_of(p.group)), p.unit_normal) for p in planes])
+    return in_mirror_planes(normals, [(np.isin(of, shell.nodes_of(p.group)), p.unit_normal) for p in planes])

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from magshell.arrays import AnyArray, FloatArray
+from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.errors import InputError, suggest
 from magshell.magnetics.remanence import Remanence
 from magshell.materials import completed
@@ -19,6 +19,7 @@ from magshell.model.hinge import Hinge
 from magshell.model.overall import overall_remanence
 from magshell.model.parts import Draft, Heights, Part, completed_drafts, drafts_of, heights_of, parts_of
 from magshell.model.region import NO_REMANENCE, Layer, Region
+from magshell.model.rigid_body import RigidBody
 from magshell.model.thickness import Thickness
 from magshell.shell.elements import ELEMENTS, QUADRATIC
 
@@ -63,6 +64,8 @@ class Shell:
         Gauss points through the thickness of each layer.
     hinges : sequence of Hinge, optional
         Edges along which the shell may turn freely, or against a spring.
+    rigid : sequence of RigidBody, optional
+        Groups that move as rigid bodies.
 
     Raises
     ------
@@ -84,6 +87,7 @@ class Shell:
     offset: str | float = "middle"
     levels: int = 2
     hinges: Sequence[Hinge] = ()
+    rigid: Sequence[RigidBody] = ()
     _drafts: list[Draft] = dataclasses.field(init=False, repr=False)
     _heights: list[Heights] = dataclasses.field(init=False, repr=False)
 
@@ -92,6 +96,7 @@ class Shell:
         put(self, "regions", tuple(self.regions))
         put(self, "layers", tuple(self.layers))
         put(self, "hinges", tuple(self.hinges))
+        put(self, "rigid", tuple(self.rigid))
         if self.density is not None:
             put(self, "density", positive("shell: density", self.density, "kg/m^3"))
         if self.thickness is not None and not callable(self.thickness):
@@ -180,6 +185,24 @@ class Shell:
             faces[draft.elements, :, 0], faces[draft.elements, :, 1] = -half, half
             faces[draft.elements] -= height.offset_at_nodes[..., None]
         return faces
+
+    def body_row(self, name: str | None) -> int | None:
+        """Row of the nodal arrays of the rigid body of this name; None: there is none."""
+        names = [body.name for body in self.rigid]
+        return len(self.mesh.points) + names.index(name) if name in names else None
+
+    def nodes_of(self, name: str) -> IntArray:
+        """Nodes of a group, or those that belong to a rigid body.
+
+        Raises
+        ------
+        InputError
+            There is neither.
+        """
+        groups = {body.name: body.group for body in self.rigid}
+        if name not in groups and name not in self.mesh.groups and groups:
+            raise InputError(f"There is no group or rigid body '{name}'. {suggest(name, [*self.mesh.groups, *groups])}")
+        return self.mesh.nodes_of(groups.get(name, name))
 
     def mean_of(self, parameter: str) -> FloatArray:
         """A parameter of the material of each element (elements,), its mean over the layers."""

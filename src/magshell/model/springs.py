@@ -8,7 +8,7 @@ with the functions N_I that loads on the group have (`loads/distribution.py`): w
 spring pulls as a traction of that size does. Along a direction n, fixed in space, 1 is n ⊗ n. Springs are slack in the
 undeformed shell, and no load factor scales them.
 
-A new kind of spring is a class with these attributes whose `applied` gives an `Elastic`, and an entry of `SPRINGS`.
+A new kind of spring is a class with these attributes whose `applied` gives an `Anchored`, and an entry of `SPRINGS`.
 """
 
 from __future__ import annotations
@@ -24,7 +24,6 @@ from numpy.typing import ArrayLike
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.keys import Key
-from magshell.mesh import Mesh
 from magshell.model.loads.dead import nodal
 from magshell.model.loads.distribution import Products, centroid_weights, products
 from magshell.model.loads.load import Applied, Pairs
@@ -37,7 +36,14 @@ from magshell.wording import counted, vector
 
 
 class Elastic(Applied, Protocol):
-    """A spring on a mesh. Its forces are minus the derivative of its energy."""
+    """Forces on a mesh that are minus the derivative of an energy."""
+
+    def energy(self, state: State) -> float:
+        """J."""
+
+
+class Anchored(Elastic, Protocol):
+    """Springs whose other end is fixed in space."""
 
     @property
     def weights(self) -> FloatArray:
@@ -46,9 +52,6 @@ class Elastic(Applied, Protocol):
     @property
     def about(self) -> FloatArray | None:
         """What the moment of its reaction is about (3,), m; None: the centroid."""
-
-    def energy(self, state: State) -> float:
-        """J."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +103,7 @@ class Spring:
     name: str | None = None
     point: ArrayLike | None = None
 
-    def applied(self, shell: Shell, places: Places) -> Elastic:
+    def applied(self, shell: Shell, places: Places) -> Anchored:
         """The springs on the nodal arrays of a shell.
 
         Raises
@@ -186,12 +189,12 @@ class Spring:
         except InputError as error:
             raise InputError(f"{self.label}: {error}") from None
 
-    def words(self, mesh: Mesh) -> str:
+    def words(self, shell: Shell) -> str:
         """The springs in `magshell check`."""
         key, value = self._amount()
         along = "" if self.direction is None else f" along {vector(np.ravel(self.direction))}"
         in_all = " in all" if key == "stiffness" else ""
-        return f"{show(value, self.amounts[key])}{in_all}{along}, {counted(len(mesh.nodes_of(self.group)), 'node')}"
+        return f"{show(value, self.amounts[key])}{in_all}{along}, {counted(len(shell.nodes_of(self.group)), 'node')}"
 
     @property
     def legend(self) -> str:

@@ -14,6 +14,7 @@ from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError, suggest
 from magshell.keys import HISTORY, Key
 from magshell.model.places import Places
+from magshell.model.rigid_body import RigidBody
 from magshell.multipliers import amplitudes
 from magshell.shell.unknowns import COLUMNS, COMPONENTS
 from magshell.units import ANGLE, INVERSE_LENGTH, LENGTH, NUMBER
@@ -182,10 +183,7 @@ class SymmetryPlane(Support):
         normal = self.unit_normal
         for field in ("u", "w"):
             yield Condition(self.group, field, normal, 0.0, optional=True)
-        helper = AXES[np.argmin(np.abs(normal))]
-        first = np.cross(normal, helper)
-        first /= np.linalg.norm(first)
-        for tangent in (first, np.cross(normal, first)):
+        for tangent in _frame_about(normal)[1:]:
             yield Condition(self.group, "omega", tangent, 0.0, optional=True)
 
 
@@ -261,8 +259,114 @@ class Prescribe(Support):
             yield Condition(self.group, self.field, axis, float(component), False, self.history)
 
 
+@dataclass(frozen=True)
+class Turn(Support):
+    """A rigid motion: a group, or a rigid body, turned about an axis by any angle, and moved.
+
+    A group becomes a rigid body of its own: displacement, director and micro-rotation of its nodes follow.
+
+    Parameters
+    ----------
+    group : str
+        Group of nodes, edges or elements, or the name of a rigid body.
+    axis : array_like, shape (3,)
+        Direction of the axis.
+    angle : float, optional
+        rad, of any size.
+    through : array_like, shape (3,), optional
+        Point on the axis, m; by default the centroid of the group's nodes. Of a rigid body it is its reference point.
+    translation : array_like, shape (3,), optional
+        Displacement of that point, m.
+    history : sequence of float, optional
+        Multiplier of angle and translation at the end of each stage; by default it grows to 1 in the first and stays.
+    """
+
+    kind: ClassVar[str] = "turn"
+    keys: ClassVar[Mapping[str, Key]] = {
+        "group": Key("Name", "Group of edges, nodes or elements, or the name of a rigid body."),
+        "axis": Key("Direction", "Of the axis."),
+        "angle": Key("Angle", "By which it is turned; any size.", "0"),
+        "through": Key("Position", "Point on the axis.", "the centroid of the group's nodes"),
+        "translation": Key("Position", "Displacement of that point.", "none"),
+        "history": HISTORY,
+    }
+    mark: ClassVar[Literal["balls", "cubes"]] = "cubes"
+
+    group: str
+    axis: ArrayLike
+    angle: float = 0.0
+    through: ArrayLike | None = None
+    translation: ArrayLike = (0.0, 0.0, 0.0)
+    history: Sequence[float] | None = None
+
+    @property
+    def words(self) -> str:
+        """With the angle."""
+        moved = np.any(np.asarray(self.translation, dtype=float))
+        also = f", moved by {quantity(tuple(np.ravel(self.translation).tolist()), LENGTH)}" if moved else ""
+        return f"turned by {quantity(float(self.angle), ANGLE)} about {vector(np.ravel(self.axis))}{also}"
+
+    @property
+    def legend(self) -> str:
+        """In pictures."""
+        return "turned"
+
+    def conditions(self) -> Iterator[Condition]:
+        """Six on the rigid body."""
+        where = f"support on '{self.group}'"
+        axis, translation = (
+            _numbers(self.group, "axis", self.axis),
+            _numbers(self.group, "translation", self.translation),
+        )
+        if axis.shape != (3,) or not np.all(np.isfinite(axis)) or not np.any(axis):
+            raise InputError(f"{where}: axis is {self.axis!r}; it needs 3 finite components, not all zero")
+        if translation.shape != (3,) or not np.all(np.isfinite(translation)):
+            raise InputError(f"{where}: translation is {self.translation!r}; it needs 3 finite components")
+        angle = _numbers(self.group, "angle", self.angle)
+        if angle.shape != () or not np.isfinite(angle):
+            raise InputError(f"{where}: angle is {self.angle!r}; it must be one finite number")
+        for direction, value in zip(AXES, translation, strict=True):
+            yield Condition(self.group, "u", direction, float(value), False, self.history)
+        for number, direction in enumerate(_frame_about(axis / np.linalg.norm(axis))):
+            yield Condition(self.group, "omega", direction, 0.0 if number else float(angle), False, self.history)
+
+    def body(self) -> RigidBody:
+        """The rigid body that its group becomes."""
+        return RigidBody(self.group, point=self.through)
+
+
+def _frame_about(axis: FloatArray) -> FloatArray:
+    """A unit vector (3,) and two normal to it and to each other, as rows."""
+    first = np.cross(axis, AXES[np.argmin(np.abs(axis))])
+    first /= np.linalg.norm(first)
+    return np.array([axis, first, np.cross(axis, first)])
+
+
+def turned_bodies(bodies: Sequence[RigidBody], supports: Sequence[Support]) -> tuple[RigidBody, ...]:
+    """Rigid bodies, and those that the groups of `Turn` become.
+
+    Raises
+    ------
+    InputError
+        A rigid body is turned about an axis that does not go through its reference point.
+    """
+    known = {body.name for body in bodies}
+    more: dict[str, RigidBody] = {}
+    for support in supports:
+        if not isinstance(support, Turn):
+            continue
+        if support.group not in known:
+            more.setdefault(support.group, support.body())
+        elif support.through is not None:
+            raise InputError(
+                f"support on '{support.group}': through is given, and a rigid body turns about its reference point; "
+                "leave through out and give the body this point"
+            )
+    return (*bodies, *more.values())
+
+
 SUPPORTS: dict[str, type[Support]] = {
-    support.kind: support for support in (Clamp, SimpleSupport, SymmetryPlane, Prescribe)
+    support.kind: support for support in (Clamp, SimpleSupport, SymmetryPlane, Prescribe, Turn)
 }
 """The supports that problem files know, by their kind."""
 

@@ -55,9 +55,8 @@ class Mirrored(Protocol):
 
 def planes(model: Mirrored) -> list[Plane]:
     """The mirror planes of a model."""
-    mesh = model.shell.mesh
     return [
-        Plane(support.group, support.unit_normal, mesh.nodes_of(support.group))
+        Plane(support.group, support.unit_normal, model.shell.nodes_of(support.group))
         for support in model.supports
         if isinstance(support, SymmetryPlane)
     ]

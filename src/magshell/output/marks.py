@@ -230,7 +230,7 @@ def support_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:
     marks = []
     mesh = model.shell.mesh
     for number, support in enumerate(model.supports):
-        nodes = mesh.nodes_of(support.group)
+        nodes = model.shell.nodes_of(support.group)
         nodes = nodes[spread_out(mesh.points[nodes], MOST_POSTS)]
         width = min(0.016 * size, 0.7 * _closest(mesh.points[nodes]))
         solids = Solids[support.mark.upper()]
@@ -245,7 +245,7 @@ def spring_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:
     """Coils that hang on the group, along the springs' direction or down in the picture."""
     marks, mesh = [], model.shell.mesh
     for number, spring in enumerate(model.springs, start=len(model.supports)):
-        nodes = mesh.nodes_of(spring.group)
+        nodes = model.shell.nodes_of(spring.group)
         nodes = nodes[spread_out(mesh.points[nodes], MOST_OF_A_LOAD)]
         along = axes[1] if spring.direction is None else unit(np.array(spring.direction, dtype=float)[None])[0]
         vectors = np.tile(0.09 * size * along, (len(nodes), 1))

@@ -202,16 +202,15 @@ def _field(problem: Problem, figures: Whole) -> Iterator[tuple[str, str]]:
 def _supports(problem: Problem, figures: Whole) -> Iterator[tuple[str, str]]:
     planes = iter(symmetry.planes(problem.model))
     for support in problem.model.supports:
-        nodes = counted(len(problem.model.shell.mesh.nodes_of(support.group)), "node")
+        nodes = counted(len(problem.model.shell.nodes_of(support.group)), "node")
         mirrored = isinstance(support, SymmetryPlane)
         half = symmetry_report.other_half(problem, next(planes)) if mirrored else ""
         yield support.group, f"{support.words}, {nodes}{_reaction(support, figures.extent)}{half}"
 
 
 def _springs(problem: Problem, figures: Whole) -> Iterator[tuple[str, str]]:
-    mesh = problem.model.shell.mesh
     for spring in problem.model.springs:
-        yield spring.group, f"{spring.words(mesh)}{_reaction(spring, figures.extent)}"
+        yield spring.group, f"{spring.words(problem.model.shell)}{_reaction(spring, figures.extent)}"
 
 
 def _reaction(support: Support | Spring, extent: float) -> str:

@@ -37,7 +37,7 @@ class Force(TotalLoad):
     ----------
     group : str
         A group of nodes, which share it equally, of edges, along whose undeformed length it is uniform, or of elements,
-        over whose undeformed area it is uniform.
+        over whose undeformed area it is uniform; or the name of a rigid body, at whose reference point it acts.
     total : array_like, shape (3,)
         N.
     follower : bool, optional
@@ -69,7 +69,12 @@ class Force(TotalLoad):
                 raise InputError(
                     "a follower turns with the micro-rotation, which this shell does not have; leave follower out"
                 )
-            parts = shares(shell, self.group, "omega" if self.follower else "u")
+            body = shell.body_row(self.group)
+            parts = np.zeros(len(rows.of))
+            if body is None:
+                parts[: rows.nodes] = shares(shell, self.group, "omega" if self.follower else "u")
+            else:
+                parts[body] = 1.0
             on_u = parts[:, None] * vector("total", self.total)
         return _TurningForces(on_u) if self.follower else DeadForces(on_u)
 

@@ -37,7 +37,7 @@ class Gravity(Load):
     acceleration : array_like, shape (3,)
         m/s².
     group : str, optional
-        A group of elements that has weight; by default all.
+        A group of elements that has weight, or a rigid body with a mass; by default all.
     history : sequence of float, optional
         Multiplier at the end of each stage; by default 1 at the end of the first and from then on.
     """
@@ -60,8 +60,12 @@ class Gravity(Load):
         """The load on a mesh."""
         with self.located():
             acceleration = vector("acceleration", self.acceleration)
-            members = self.members(shell)
+            body = shell.body_row(self.group)
+            members = np.empty(0, dtype=np.int64) if body is not None else self.members(shell)
         masses = nodal_masses(shell, rows, members)
+        for number, one in enumerate(shell.rigid):
+            if self.group in (None, one.name):
+                masses.on_u[rows.nodes + number] += one.mass
         return DeadForces(*(mass[:, None] * acceleration for mass in masses))
 
     def words(self, shell: Shell, forces: FloatArray) -> str:

@@ -234,7 +234,7 @@ class Load(ABC):
         mesh = shell.mesh
         if self.group is None:
             return np.arange(len(mesh.points if self.on == "nodes" else mesh.elements))
-        return mesh.nodes_of(self.group) if self.on == "nodes" else mesh.elements_of(self.group)
+        return shell.nodes_of(self.group) if self.on == "nodes" else mesh.elements_of(self.group)
 
     def extent(self, shell: Shell) -> str:
         """How many nodes or elements it acts on, in words."""

@@ -60,7 +60,7 @@ class Moment(TotalLoad):
     Parameters
     ----------
     group : str
-        A group of nodes, edges or elements, as for `Force`; nodes without rotation get none of it.
+        A group of nodes, edges or elements, or a rigid body, as for `Force`; nodes without rotation get none of it.
     total : array_like, shape (3,)
         N m.
     follower : bool, optional
@@ -93,7 +93,9 @@ class Moment(TotalLoad):
                     "a follower turns with the micro-rotation, which this shell does not have; leave follower out: "
                     "the moment then works on the director, about an axis fixed in space"
                 )
-            total, normals = vector("total", self.total), rows.normals[: rows.nodes]
+            total, normals, body = vector("total", self.total), rows.normals[: rows.nodes], shell.body_row(self.group)
+            if body is not None:
+                return (_TurningCouple if self.follower else _Couple)(body, total)
             moments = shares(shell, self.group, "w")[:, None] * total
             nodes = np.flatnonzero(np.any(moments, axis=1))
             if not shell.micro_rotation:
@@ -189,6 +191,51 @@ class _TurningMoments(_SectionMoments):
         M, d = self.acting(state)
         turning = cross_matrix(M) / _square(d)[..., None]
         return [*super().stiffness(state), -cross_matrix(d) @ turning, _dyad(d, d) @ turning]
+
+
+@dataclass(frozen=True, eq=False)
+class _Couple:
+    """A moment (3,) on the spin of a rigid body, N m; one that turns, of the unrotated body."""
+
+    row: int
+    moment: FloatArray
+
+    @property
+    def conservative(self) -> bool:
+        return False
+
+    @property
+    def pairs(self) -> Sequence[Pairs]:
+        return ()
+
+    def acting(self, state: State) -> FloatArray:
+        """The moment (3,)."""
+        return self.moment
+
+    def forces(self, state: State) -> FloatArray:
+        """On the spin of the body."""
+        couples = np.zeros_like(state.u)
+        couples[self.row] = self.acting(state)
+        return nodal("omega", couples)
+
+    def stiffness(self, state: State) -> list[FloatArray]:
+        """None: the moment keeps its axis."""
+        return []
+
+
+class _TurningCouple(_Couple):
+    @property
+    def pairs(self) -> Sequence[Pairs]:
+        at = np.array([self.row])
+        return (Pairs("omega", "omega", at, at),)
+
+    def acting(self, state: State) -> FloatArray:
+        """R M."""
+        return np.asarray(rotation.matrix(state.q[self.row]) @ self.moment)
+
+    def stiffness(self, state: State) -> list[FloatArray]:
+        """[c]×."""
+        return [cross_matrix(self.acting(state)[None])]
 
 
 def _square(d: FloatArray) -> FloatArray:
