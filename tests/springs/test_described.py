@@ -1,4 +1,4 @@
-"""Springs that make no sense are refused, with the group and what would be right; and in problem files."""
+"""Springs that make no sense are refused, with the group and what would be right; in problem files and pictures."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import pytest
 
 import magshell as ms
 from magshell import cli, problem
+from magshell.output.marks import spring_marks
 
 MESH = ms.mesh.rectangle(20.0, 10.0, (2, 1)).select_elements("all", x1=(0.0, 20.0))
 SHELL = ms.Shell(MESH, 1.0, ms.MicropolarNeoHookean(1.0, 1.0))
@@ -125,3 +126,21 @@ def test_bad_files(
     file.write_text(FILE.replace(old, new, 1))
     assert cli.main(["check", str(file)]) == 2
     assert message in capsys.readouterr().err
+
+
+def test_in_pictures():
+    """Coils that end on the nodes, along the springs' direction; down in the picture without one."""
+    springs = [ms.Spring("left", stiffness=2e3, direction=(0, 0, 2)), ms.Spring("all", per_area=2e5)]
+    axes = np.eye(3)
+    model = ms.Model(SHELL, [], loads=[ms.Force("right", (0, 0, 1.0))], springs=springs)
+    along, bed = spring_marks(model, 20.0, axes)
+    assert (along.name, bed.name) == ("left: springs, 2 N/mm", "all: springs, 0.2 kPa/mm")
+    for mark, axis in ((along, 2), (bed, 1)):
+        length = np.abs(mark.vectors[:, axis])
+        assert np.all(length > 0.0)
+        assert np.allclose(np.linalg.norm(mark.vectors, axis=1), length)
+        ends = mark.places + 0.56 * mark.vectors
+        assert all(np.linalg.norm(MESH.points - end, axis=1).min() < 1e-12 for end in ends)
+    assert {tuple(end) for end in (along.places + 0.56 * along.vectors).round(9)} <= {
+        tuple(point) for point in MESH.points[MESH.nodes_of("left")].round(9)
+    }
