@@ -52,7 +52,16 @@ def _of_supports(letter: str) -> Callable[[Model], Sequence[str]]:
 def _magnetic(converged: Converged) -> Number:
     if not is_conservative(converged.discretisation.model.coupling):
         return None
-    return float(converged.energies[:, MAGNETIC].sum())
+    magnets = converged.discretisation.dipoles.energy(converged.state, converged.loading)
+    return float(converged.energies[:, MAGNETIC].sum()) + magnets
+
+
+def _has_springs(model: Model) -> bool:
+    return bool(model.springs) or any(hinge.stiffness for hinge in model.shell.hinges)
+
+
+def _of_bodies(model: Model, *letters: str) -> list[str]:
+    return [f"{body.name}.{letter}{i}" for body in model.shell.rigid for letter in letters for i in (1, 2, 3)]
 
 
 def _largest(name: str, unit: str, sentence: str, quantities: Sequence[str]) -> Series:
@@ -125,8 +134,8 @@ SERIES: dict[str, Series] = {
         Series(
             "motion of rigid bodies",
             "",
-            "Displacement of the reference point of a rigid body (`NAME.u1`, `u2`, `u3`, m) and its rotation vector, of "
-            "magnitude at most π (`NAME.theta1`, `theta2`, `theta3`, rad).",
+            "Displacement of the reference point of a rigid body (`NAME.u1`, `u2`, `u3`, m) and its rotation vector, "
+            "of magnitude at most π (`NAME.theta1`, `theta2`, `theta3`, rad).",
             lambda model: _of_bodies(model, "u", "theta"),
             lambda converged: [number for motion in converged.body_motions for number in motion.ravel().tolist()],
         ),
