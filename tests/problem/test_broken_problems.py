@@ -178,7 +178,25 @@ BROKEN = [
     Broken("key twice", 'width = "5 mm"', 'width = "5 mm"\nwidth = "6 mm"', "", ("not valid TOML", "twice", "line 6")),
     Broken("table twice", "[field]", "[shell]\n[field]", "", ("not valid TOML", "twice", "line")),
     Broken("quote not closed", '"303 kPa"', '"303 kPa', "", ("not valid TOML", "line 16")),
-    Broken("unit outside the quotes", '"303 kPa"', "303 kPa", "", ("not valid TOML", "line 16")),
+    Broken("unit outside the quotes", '"303 kPa"', "303 kPa", "", ("not valid TOML", "line 16", 'in quotes: shear_modulus = "303 kPa"')),
+    Broken("comma and no quotes", 'thickness = "1 mm"', "thickness = 0,8 mm", "", ("line 12", 'in quotes: thickness = "0.8 mm"')),
+    Broken("name without quotes", '"clamp"', "clamp  # here", "", ("not valid TOML", 'in quotes: kind = "clamp"')),
+    Broken("unit outside the quotes in a list", '"143 mT"', "143 mT", "", ("not valid TOML", "in quotes, also in a list")),
+    # what is called otherwise, stands elsewhere or does not exist
+    Broken("two materials", "[material]", "[[material]]", "material", ("one [material] only", "further materials belong to [[regions]]")),
+    Broken("list of meshes", "[mesh]", "[[mesh]]", "mesh", ("one [mesh] only",), STRIP.replace("[mesh.edge_groups]\nfar = { x1 = \"20 mm\" }\n", "")),
+    Broken("shell as text", '[shell]\nthickness = "1 mm"\n', "", "shell", ("not a table", "write [shell]"), 'shell = "1 mm"\n' + STRIP),
+    Broken("list of fields", "[field]", "[[field]]", "field", ("one [field] only",)),
+    Broken("list of probes", "[probes]", "[[probes]]", "probes", ("one [probes] only", "tip = [")),
+    Broken("magnets", "[probes]", "[[magnets]]\n[probes]", "magnets", ("Did you mean 'remanence'",)),
+    Broken("contact", "[probes]", "[contact]\n[probes]", "contact", ("there is no contact",)),
+    Broken("density of the material", "shear_modulus", "density", "material.density", ("belongs to [shell]",)),
+    Broken("fixed", '"clamp"', '"fixed"', "supports[0].kind", ("'fixed'", "Did you mean 'clamp'")),
+    Broken("pinned", '"clamp"', '"pinned"', "supports[0].kind", ("Did you mean 'simple'",)),
+    Broken("type of a support", 'kind = "clamp"', 'type = "clamp"', "supports[0].kind", ("is missing", "'type' in its place")),
+    Broken("element type", "[shell]", '[shell]\nelement = "quad"', "shell.element", ("did you mean 'quadratic'",)),
+    Broken("decimal comma", '"1 mm"\n\n[material]', '"0,8 mm"\n\n[material]', "shell.thickness", ("decimal comma", '"0.8 mm"')),
+    Broken("bare number", '"1 mm"\n\n[material]', "30\n\n[material]", "shell.thickness", ("no unit", '"30 mm"')),
 ]  # fmt: skip
 
 

@@ -21,6 +21,7 @@ from magshell.materials import Multiple
 from magshell.model.parts import MOST_LEVELS
 from magshell.model.region import OFFSETS
 from magshell.model.supports import DIMENSION_OF_FIELD
+from magshell.nearest import nearest
 from magshell.shell.elements import ELEMENTS
 
 # Beyond these no shell exists; within them no product of two magnitudes overflows or vanishes.
@@ -267,7 +268,9 @@ def one_of(names: Collection[str]) -> BeforeValidator:
     def read(value: object) -> object:
         if value not in names:
             *others, last = (f"'{name}'" for name in names)
-            raise InputError(f"{units.quoted(value)} is not one of {', '.join(others)} or {last}")
+            near = nearest(value, names) if isinstance(value, str) else None
+            hint = f"; did you mean '{near}'?" if near else ""
+            raise InputError(f"{units.quoted(value)} is not one of {', '.join(others)} or {last}{hint}")
         return value
 
     return BeforeValidator(read)
