@@ -62,6 +62,10 @@ _SYNONYMS = {
     "length": "l",
     "file": "filename path",
     "unit": "units",
+    "x1": "x",
+    "x2": "y",
+    "x3": "z",
+    "sphere": "ball near distance",
     # units
     "mm": "millimeter millimeters millimetre millimetres",
     "um": "micron microns micrometer micrometers micrometre micrometres",

@@ -159,6 +159,22 @@ def _levels(value: object) -> object:
     return value
 
 
+def _coordinate(value: object) -> float | tuple[float, float]:
+    if not isinstance(value, list | tuple):
+        return _read(value, units.LENGTH)
+    if len(value) != 2:
+        raise InputError(f"has {len(value)} entries; expected one coordinate, or the least and the greatest")
+    return _read(value[0], units.LENGTH), _read(value[1], units.LENGTH)
+
+
+def _radius(value: object) -> float | tuple[float, float]:
+    if not isinstance(value, list | tuple):
+        return _read_positive(value, units.LENGTH)
+    if len(value) != 2:
+        raise InputError(f"has {len(value)} entries; expected the largest distance, or the least and the largest")
+    return _not_negative(_read(value[0], units.LENGTH)), _read_positive(value[1], units.LENGTH)
+
+
 def _outline(value: object) -> object:
     if not isinstance(value, list | tuple) or len(value) < 3:
         has = f"has {len(value)} corners" if isinstance(value, list | tuple) else "is not a list"
@@ -224,6 +240,8 @@ Names = Annotated[tuple[Name, ...], BeforeValidator(_one_or_more)]
 Divisions = Annotated[tuple[Count, Count], _list_of(2, "numbers of elements in the two directions")]
 AngleRange = Annotated[tuple[Degrees, Degrees], _list_of(2, "first and last angle")]
 LengthRange = Annotated[tuple[Length, Length], _list_of(2, "least and greatest coordinate")]
+Coordinate = Annotated[float | tuple[float, float], BeforeValidator(_coordinate)]
+Radius = Annotated[float | tuple[float, float], BeforeValidator(_radius)]
 Position = Annotated[tuple[Length, Length, Length], _list_of(3, "coordinates X1, X2, X3")]
 FluxVector = Annotated[
     tuple[FluxDensity, FluxDensity, FluxDensity],

@@ -18,6 +18,7 @@ ABSENT = {
     "plasticity": "materials are elastic",
     "temperature": "there is no temperature",
     "fluid": "there is no fluid around the shell; a pressure is one of [[loads]]",
+    "box": "a box is ranges of x1, x2 and x3",
     "units": "there is no system of units: every quantity is written with its own, in quotes",
 }
 """What other programs have and this one does not, by the key that people write for it."""
