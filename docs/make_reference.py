@@ -309,7 +309,9 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
     "field": (
         schema.FieldTable,
         {
-            "flux_density": "At multiplier 1 and angle 0.",
+            "flux_density": "At multiplier 1 and angle 0; or instead",
+            "magnitude": "its magnitude, and",
+            "direction": "its direction.",
             **HISTORY,
             "rotation_axis": "About which the field turns.",
             "rotation": "Angle by which it is turned at the end of each stage.",
@@ -428,6 +430,7 @@ OTHERWISE = {
     ("mesh-file", "size"): "about 800 elements",
     ("mesh-file", "gap"): "1e-4 of the size of the drawing",
     ("polygon", "size"): "about 800 elements",
+    ("field", "flux_density"): "magnitude and direction",
     ("field", "history"): keys.HISTORY.otherwise,
     **{(name, key): a.otherwise for name, one in DESCRIBED.items() for key, a in one.keys.items() if a.otherwise},
     ("file", "field"): "none",

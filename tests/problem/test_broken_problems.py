@@ -55,6 +55,11 @@ BROKEN = [
     Broken("misspelt unit", '"303 kPa"', '"303 Kpa"', "material.shear_modulus", ("'Kpa'", "'kPa'")),
     Broken("no number", '"303 kPa"', '"soft"', "material.shear_modulus", ("'soft'", "number")),
     Broken("stop in mm", '"1 mT", "2 mT"', '"1 mm", "2 mT"', "field.stops[0]", ("length", "flux density")),
+    # the field
+    Broken("field without direction", 'flux_density = [0, 0, "2 mT"]', 'magnitude = "2 mT"', "field.direction", ("is missing beside magnitude",)),
+    Broken("field twice", "stops", 'magnitude = "2 mT"\ndirection = [0, 0, 1]\nstops', "field.flux_density", ("beside magnitude",)),
+    Broken("field of nothing", 'flux_density = [0, 0, "2 mT"]', "", "field.flux_density", ("is missing; give it, or magnitude and direction",)),
+    Broken("stop beyond the magnitude", 'flux_density = [0, 0, "2 mT"]', 'magnitude = "1.5 mT"\ndirection = [0, 1, 1]', "field.stops[1]", ("beyond",)),
     # values
     Broken("negative thickness", '"1 mm"\n\n[mat', '"-1 mm"\n\n[mat', "shell.thickness", ("-1 mm", "not positive")),
     Broken("zero thickness", '"1 mm"\n\n[mat', "0\n\n[mat", "shell.thickness", ("not positive",)),
@@ -138,6 +143,7 @@ BROKEN = [
     Broken("neither field nor load", STRIP[STRIP.index("[field]") : STRIP.index("[[supports]]")], "", "field", ("zero", "nor is there a load", "nothing loads")),
     # supports and probes
     Broken("missing group", '"left"', '"lefft"', "supports[0].group", ("'lefft'", "'left'")),
+    Broken("name of a mesh file", '"left"', '"arm (left)/1+2"', "supports[0].group", ("'arm (left)/1+2' is not a name", "a mesh file calls so is 'arm _left__1+2' here")),
     Broken("empty group name", '"left"', '""', "supports[0].group", ("name",)),
     Broken("no supports table", CLAMP, "", "supports", ("missing",)),
     Broken("no supports", CLAMP, "", "supports", ("empty",), "supports = []\n" + STRIP),

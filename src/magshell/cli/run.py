@@ -16,6 +16,7 @@ from magshell.cli.console import complain, console, say, say_doubts, say_picture
 from magshell.cli.folders import made
 from magshell.cli.memory import say_memory
 from magshell.cli.mesh import say_origin
+from magshell.cli.settings import add_settings
 from magshell.cli.status import INTERRUPTED, NOT_SOLVED, SOLVED
 from magshell.errors import InputError, lacks_memory
 from magshell.units import LENGTH, show
@@ -49,9 +50,7 @@ kill, --resume goes on from the last one, to the same numbers as a run that was 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What follows the command."""
     parser.add_argument("problem", metavar="FILE|NAME", nargs="?", help="a problem file (.toml) or a built-in problem")
-    parser.add_argument(
-        "--set", metavar="KEY=VALUE", action="append", default=[], help="another value for a key (repeatable)"
-    )
+    add_settings(parser)
     folder = parser.add_mutually_exclusive_group(required=True)
     folder.add_argument("--out", metavar="DIR", help="folder for the results, made if missing")
     folder.add_argument("--resume", metavar="DIR", help="go on with the run in this folder (no FILE then)")

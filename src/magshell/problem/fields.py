@@ -18,6 +18,7 @@ from magshell import units
 from magshell.errors import InputError, suggest
 from magshell.magnetics import COUPLINGS
 from magshell.materials import Multiple
+from magshell.mesh.files.names import named
 from magshell.model.parts import MOST_LEVELS
 from magshell.model.region import OFFSETS
 from magshell.model.supports import DIMENSION_OF_FIELD
@@ -100,7 +101,11 @@ def _text_like(pattern: re.Pattern[str], rule: str) -> Callable[[object], str]:
         if not isinstance(value, str):
             raise InputError(f"{units.quoted(value)} is not a name; write it in quotes")
         if not pattern.fullmatch(value):
-            raise InputError(f"{units.quoted(value)} is not a name: {rule}")
+            here = named(({value: ()}, {}, {}))[0][0, value] if pattern is _NAME else ""
+            renamed = (
+                f"; a group that a mesh file calls so is {units.quoted(here)} here" if value.strip() and here else ""
+            )
+            raise InputError(f"{units.quoted(value)} is not a name: {rule}{renamed}")
         return value
 
     return read

@@ -93,7 +93,7 @@ class Whole:
 
 def figures_of(problem: Problem) -> Whole:
     """Of a problem that has passed all checks."""
-    shell, flux = problem.model.shell, np.array(problem.file.field.flux_density)
+    shell, flux = problem.model.shell, np.array(problem.file.field.vector)
     mesh = shell.mesh
     vectors = shell.overall_remanence(mesh, centres(mesh.points, mesh.elements)[:, None])[:, 0]
     extent, field = float(np.ptp(mesh.points, axis=0).max()), float(np.linalg.norm(flux))

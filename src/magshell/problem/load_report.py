@@ -114,5 +114,5 @@ def doubts(problem: Problem, strong: Strength) -> Iterator[str]:
     if strong.stretching > 1e3:
         yield f"p L / (E h) is {strong.stretching:.2g}: a pressure {beyond}"
     moved = np.any(problem.model.constraints.values)
-    if problem.file.loads and not any(problem.file.field.flux_density) and not moved and strong.overall < 1e-3:
+    if problem.file.loads and not any(problem.file.field.vector) and not moved and strong.overall < 1e-3:
         yield f"12 (F L + M + W L + p L³) / (E h³) is {strong.overall:.2g}: the shell will hardly move; check the units"

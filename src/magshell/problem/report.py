@@ -188,7 +188,7 @@ def _field(problem: Problem, figures: Whole) -> Iterator[tuple[str, str]]:
     if figures.field == 0.0:
         yield "flux density B", "none"
         return
-    yield "flux density B", quantity(table.flux_density, FLUX_DENSITY)
+    yield "flux density B", quantity(table.vector, FLUX_DENSITY)
     yield "|B|", show(figures.field, FLUX_DENSITY)
     yield "coupling law", table.coupling
     if table.stops:
