@@ -17,7 +17,7 @@ from magshell.errors import InputError, NothingLoads, suggest
 from magshell.magnetics.deformation_gradient_energy import DeformationGradientEnergy
 from magshell.magnetics.field import UniformField
 from magshell.magnetics.micropolar_couple import MicropolarCouple
-from magshell.model import coupling_limit, symmetry
+from magshell.model import coupling_limit, doubts, symmetry
 from magshell.model.course import Amounts, Course, Loading
 from magshell.model.loads import Applied, Load
 from magshell.model.loads.mass import Mass, whole_mass
@@ -141,6 +141,10 @@ class Model:
 
     def _repr_html_(self) -> str:
         return str(drawing("model_html")(self))
+
+    def doubts(self) -> list[str]:
+        """Sentences, each of a slip that the model may have, as `magshell check` says them; empty: none is found."""
+        return doubts.doubts(self)
 
     def _check_targets(self) -> None:
         for stage in self.stages:
