@@ -103,11 +103,12 @@ class ProgressDisplay(Observer):
             )
 
     def cut(self, load_factor: float, reason: str) -> None:
-        """Say that a step is tried again, shorter."""
+        """Say that a step is tried again, shorter; why, is said where the path ends for it."""
+        text = f"step to {_percent(load_factor)} is too large, trying a smaller one"
         if self._live:
-            self._bar.update(self._task, description=f"step to {_percent(load_factor)} cut: {reason}")
+            self._bar.update(self._task, description=text)
         else:
-            self._line(f"step to {_percent(load_factor)} cut: {reason}")
+            self._line(text)
 
     def critical(self, point: CriticalPoint) -> None:
         """Say what was passed."""
