@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from magshell.problem.building import Problem
     from magshell.solver import Observer, Path
 
-# Displacements over the size of the body that are round-off.
-STILL = 1e-12
 _AT_THE_END = ("summary.json", "curve.png", "shape.png")
 
 ABOUT = "solve a problem and write the results"
@@ -233,6 +231,8 @@ def _forget_earlier_run(out: Console, directory: pathlib.Path) -> None:
 
 def _say_still(out: Console, path: Path) -> None:
     """That a path to its end has moved nothing, if so."""
+    from magshell.output.rounding import STILL
+
     size = path.model.shell.mesh.size
     largest = max(float(abs(step.state.u).max()) for step in path.steps)
     if path.converged and largest <= STILL * size:
