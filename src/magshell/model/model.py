@@ -135,6 +135,12 @@ class Model:
         for fault in coupling_limit.reached(self.shell, self.coupling, self.largest_field):
             coupling_limit.logger.warning("%s", fault)
 
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "probe_nodes": dict(self.probe_nodes)}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state, probe_nodes=MappingProxyType(state["probe_nodes"]))
+
     def __repr__(self) -> str:
         parts = (self.shell, self.field, self.coupling, *self.loads, *self.supports)
         return "\n  ".join([f"Model({len(self.stages)} stages, {len(self.probes)} probes)", *map(repr, parts)])

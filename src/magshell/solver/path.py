@@ -17,6 +17,7 @@ from magshell.evaluation.balance import largest_imbalances
 from magshell.evaluation.converged import converged
 from magshell.evaluation.maxima import described
 from magshell.evaluation.outputs import find
+from magshell.linalg import nested_dissection
 from magshell.model.course import Course, Loading
 from magshell.model.model import Model
 from magshell.solver.critical import CriticalPoint
@@ -90,6 +91,14 @@ class Path:
     cuts: int = 0
     cpu_seconds: float = 0.0
     trail: list[Waypoint] = field(default_factory=list)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What a pickle or a copy has: all but the equations, whose laws have addresses in this process only."""
+        left_out = ("discretisation", "history")
+        return {name: value for name, value in self.__dict__.items() if name not in left_out}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state, discretisation=Discretisation(state["model"], nested_dissection))
 
     def __repr__(self) -> str:
         return f"Path({max(len(self.steps) - 1, 0)} steps, {self.discretisation.dofs} unknowns: {self.reason})"

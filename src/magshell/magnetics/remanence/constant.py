@@ -12,8 +12,10 @@ from magshell.keys import Key
 from magshell.magnetics.remanence.vectors import Remanence, given_once
 from magshell.magnetics.remanence.vectors import vector as checked
 from magshell.magnetics.remanence.way import Way
+from magshell.remembered import remembered
 
 
+@remembered
 def constant(vector: ArrayLike) -> Remanence:
     """The same vector (3,), T, everywhere."""
     value = checked("vector", vector)
