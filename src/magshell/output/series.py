@@ -113,7 +113,7 @@ def chosen(path: Path, names: Sequence[str]) -> Group:
 
     Notes
     -----
-    What is round-off is zero.
+    A column that is all round-off is zero.
     """
     of = {name: series for series in SERIES.values() for name in series.columns(path.model)}
     units = {f"{probe}.u{i}": "m" for probe in path.model.probe_nodes for i in (1, 2, 3)}
@@ -133,7 +133,7 @@ def chosen(path: Path, names: Sequence[str]) -> Group:
     kinds = {of[name].name if name in of else "displacement" for name in names}
     unit, factor = in_pictures(units[first])
     least = ROUND_OFF * _scale(path, units[first])
-    told = {name: np.where(np.abs(numbers[name]) > least, numbers[name], 0.0) for name in names}
+    told = {name: numbers[name] * bool(np.abs(numbers[name]).max() > least) for name in names}
     return Group(", ".join(sorted(kinds)), unit, factor, _curves(told))
 
 
