@@ -94,6 +94,10 @@ KINDS = {
     fields.Offset: '`"middle"`, `"top"`, `"bottom"` or a length',
     fields.Levels: f"whole number from 1 to {MOST_LEVELS}",
     fields.LengthRange: "two lengths",
+    fields.Coordinate: "length, or two",
+    fields.Radius: "length > 0, or two",
+    schema.Sphere: "table",
+    schema.Round: "table",
     Thickness: "length > 0, or a table",
     schema.MaterialTable: "table, see `[material]`",
     tuple[schema.RemanenceTable, ...]: "list of tables, see `[[remanence]]`",
@@ -116,6 +120,11 @@ GROUPS = {
     "element_groups": "More named elements, see *Selections*.",
     "edge_groups": "More named edges, see *Selections*.",
     "node_groups": "More named nodes, see *Selections*.",
+}
+SHAPES = {
+    "sphere": "Inside of a sphere, see below.",
+    "cylinder": "Inside of an endless cylinder, see below.",
+    "polygon": "Corners of a polygon in the plane $X_1$–$X_2$: in it, above or below.",
 }
 HISTORY = {"history": keys.HISTORY.meaning}
 
@@ -242,14 +251,34 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             **GROUPS,
         },
     ),
+    "selection": (
+        schema.Selection,
+        {
+            **{f"x{i}": f"Coordinate $X_{i}$, or the least and the greatest; left out, it is free." for i in (1, 2, 3)},
+            **SHAPES,
+            "groups": "Of which edges, or nodes, are chosen; left out: all boundary edges, all nodes.",
+        },
+    ),
     "elements-selection": (
         schema.Elements,
         {
             **{f"x{i}": f"Least and greatest coordinate $X_{i}$; left out, it is free." for i in (1, 2, 3)},
+            **SHAPES,
             "groups": "Element groups to choose from; left out, all elements.",
         },
     ),
-    "selection": (schema.Selection, {f"x{i}": f"Coordinate $X_{i}$; left out, it is free." for i in (1, 2, 3)}),
+    "sphere": (
+        schema.Sphere,
+        {"centre": "Of the sphere.", "radius": "Largest distance from the centre, or the least and the largest."},
+    ),
+    "round": (
+        schema.Round,
+        {
+            "through": "A point of the axis.",
+            "axis": "Its direction.",
+            "radius": "Largest distance from the axis, or the least and the largest.",
+        },
+    ),
     "shell": (
         schema.ShellTable,
         {
@@ -322,7 +351,9 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
     "field": (
         schema.FieldTable,
         {
-            "flux_density": "At multiplier 1 and angle 0.",
+            "flux_density": "At multiplier 1 and angle 0; or instead",
+            "magnitude": "its magnitude, and",
+            "direction": "its direction.",
             **HISTORY,
             "rotation_axis": "About which the field turns.",
             "rotation": "Angle by which it is turned at the end of each stage.",
@@ -448,6 +479,7 @@ OTHERWISE = {
     ("mesh-file", "size"): "about 800 elements",
     ("mesh-file", "gap"): "1e-4 of the size of the drawing",
     ("polygon", "size"): "about 800 elements",
+    ("field", "flux_density"): "magnitude and direction",
     ("field", "history"): keys.HISTORY.otherwise,
     **{(name, key): a.otherwise for name, one in DESCRIBED.items() for key, a in one.keys.items() if a.otherwise},
     ("file", "field"): "none",

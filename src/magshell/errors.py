@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import difflib
 import errno
 from collections.abc import Iterable
+
+from magshell.nearest import nearest
 
 
 class InputError(ValueError):
@@ -44,6 +45,6 @@ def suggest(name: str, valid: Iterable[str]) -> str:
     names = sorted(valid)
     if not names:
         return "There is none."
-    close = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+    near = nearest(name, names)
     listed = ", ".join(names[:20]) + (", …" if len(names) > 20 else "")
-    return (f"Did you mean '{close[0]}'? " if close else "") + f"There is: {listed}."
+    return (f"Did you mean '{near}'? " if near else "") + f"There is: {listed}."

@@ -11,6 +11,7 @@ import contextlib
 import hashlib
 import importlib.util
 import logging
+import multiprocessing
 import os
 import pathlib
 import pickle
@@ -32,6 +33,8 @@ COMPILING = "compiling %s ..."
 WAITING = "waiting for another process that compiles %s ..."
 FIRST_USE = "compiling the kernels for the first use of this version (about half a minute, once) ..."
 
+LARGE = ("fill", "predict_stresses")
+"""Kernels that take so long that even a program without a display says it."""
 PACKAGE = "magshell"
 SUFFIX = ".kernel"
 _CHECKSUM = hashlib.sha256
@@ -164,6 +167,8 @@ class Store:
             found = self._read(self.folder, self._file(self.folder, signature, context.codegen()))
         if found is not None:
             return CompileResult._rebuild(context, *found)
+        if self.name in LARGE and multiprocessing.parent_process() is None:
+            _warn_once(FIRST_USE)
         log.info(COMPILING, self._shown)
         return None
 

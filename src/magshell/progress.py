@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import logging
 import time
-from collections.abc import Callable
 from types import TracebackType
 from typing import TYPE_CHECKING
 
@@ -12,9 +10,8 @@ import numpy as np
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
-from magshell.kernel_cache import COMPILING, FIRST_USE, WAITING, log
+from magshell.kernel_messages import KernelMessages
 from magshell.linalg import make_solver
-from magshell.shell.loops import are_compiled
 from magshell.solver.events import Observer
 from magshell.units import FLUX_DENSITY, show
 
@@ -25,41 +22,6 @@ if TYPE_CHECKING:
     from magshell.solver.path import Path
     from magshell.solver.settings import Settings
     from magshell.solver.step import Step
-
-
-class KernelMessages(logging.Handler):
-    """What compilation and its cache have to say, as lines of a display.
-
-    A first use compiles some fifteen functions. One line at its start says what is waited for, and how long; later
-    ones say that a further law is compiled.
-    """
-
-    def __init__(self, line: Callable[..., None]) -> None:
-        super().__init__()
-        self._line, self._logger = line, log
-        self._first_use = False
-
-    def listen(self) -> None:
-        """Begin; messages go nowhere else meanwhile."""
-        self._logger.setLevel(logging.INFO)
-        self._logger.propagate = False
-        self._logger.addHandler(self)
-
-    def stop(self) -> None:
-        """End."""
-        self._logger.removeHandler(self)
-        self._logger.propagate = True
-        self._logger.setLevel(logging.NOTSET)
-
-    def emit(self, record: logging.LogRecord) -> None:
-        """Show a message."""
-        if record.levelno >= logging.WARNING:
-            self._line(f"warning: {record.getMessage()}", style="yellow")
-        elif record.msg not in (COMPILING, WAITING):
-            self._line(record.getMessage())
-        elif not self._first_use:
-            self._first_use = not are_compiled()
-            self._line(FIRST_USE if self._first_use else f"{record.getMessage()[:-4]} (some seconds, once) ...")
 
 
 class ProgressDisplay(Observer):
@@ -90,7 +52,7 @@ class ProgressDisplay(Observer):
             disable=not self._live,
         )
         self._task = self._bar.add_task("preparing", total=1.0)
-        self._messages = KernelMessages(self._line)
+        self._messages = KernelMessages(self._line, solves=True)
 
     def __enter__(self) -> ProgressDisplay:
         self._began = time.monotonic()
@@ -141,11 +103,12 @@ class ProgressDisplay(Observer):
             )
 
     def cut(self, load_factor: float, reason: str) -> None:
-        """Say that a step is tried again, shorter."""
+        """Say that a step is tried again, shorter; why, is said where the path ends for it."""
+        text = f"step to {_percent(load_factor)} is too large, trying a smaller one"
         if self._live:
-            self._bar.update(self._task, description=f"step to {_percent(load_factor)} cut: {reason}")
+            self._bar.update(self._task, description=text)
         else:
-            self._line(f"step to {_percent(load_factor)} cut: {reason}")
+            self._line(text)
 
     def critical(self, point: CriticalPoint) -> None:
         """Say what was passed."""

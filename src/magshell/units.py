@@ -5,16 +5,18 @@ This is the only place that knows a unit; everywhere else a number is in metre, 
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
 from dataclasses import dataclass
 from decimal import Decimal, localcontext
 
 from magshell.errors import InputError
+from magshell.nearest import nearest
 
 _PI = "3.14159265358979323846264338327950288"
 _NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,6})?)(.*)", re.DOTALL)
+_DECIMAL_COMMA = re.compile(r"\s*([+-]?[0-9]*),([0-9]+)(?![0-9,.])(.*)", re.DOTALL)
+_FRACTION = re.compile(r"\s*[+-]?[0-9.]+\s*/\s*[0-9]")
 _NOT_FINITE = re.compile(r"\s*[+-]?(nan|inf|infinity)\b", re.IGNORECASE)
 
 
@@ -30,11 +32,15 @@ class Dimension:
         Value of one unit in SI; the SI unit is the first.
     display : tuple of (str, float)
         Unit and the smallest magnitude (SI) that is shown in it, in falling order.
+    usual : tuple of (str, float)
+        Unit that is proposed to who wrote a number without one, and the magnitude below which it is, in rising order;
+        beyond the last the SI unit.
     """
 
     name: str
     units: dict[str, Decimal]
     display: tuple[tuple[str, float], ...]
+    usual: tuple[tuple[str, float], ...] = ()
 
     @property
     def allowed(self) -> str:
@@ -51,8 +57,11 @@ def spelled(unit: str) -> str:
     return unit.replace("\u03bc", "\u00b5")
 
 
-def _dimension(name: str, units: dict[str, str], display: dict[str, float]) -> Dimension:
-    return Dimension(name, {unit: Decimal(value) for unit, value in units.items()}, tuple(display.items()))
+def _dimension(
+    name: str, units: dict[str, str], display: dict[str, float], usual: dict[str, float] | None = None
+) -> Dimension:
+    values = {unit: Decimal(value) for unit, value in units.items()}
+    return Dimension(name, values, tuple(display.items()), tuple((usual or {}).items()))
 
 
 with localcontext() as _context:
@@ -65,22 +74,25 @@ LENGTH = _dimension(
     "length",
     {"m": "1", "cm": "1e-2", "mm": "1e-3", "um": "1e-6", "µm": "1e-6"},
     {"m": 1.0, "mm": 1e-4, "um": 0.0},
+    usual={"m": 0.05, "mm": 1e4},
 )
 STRESS = _dimension(
     "stress",
     {"Pa": "1", "kPa": "1e3", "MPa": "1e6", "GPa": "1e9", "N/mm^2": "1e6"},
     {"GPa": 1e9, "MPa": 1e6, "kPa": 1e3, "Pa": 0.0},
+    usual={"MPa": 1.0, "kPa": 1e4},
 )
 _TESLA = {"T": "1", "mT": "1e-3", "uT": "1e-6", "µT": "1e-6", "G": "1e-4", "Gauss": "1e-4"}
 _SHOWN_TESLA = {"T": 1.0, "mT": 1e-4, "uT": 0.0}
-FLUX_DENSITY = _dimension("magnetic flux density", _TESLA, _SHOWN_TESLA)
+FLUX_DENSITY = _dimension("magnetic flux density", _TESLA, _SHOWN_TESLA, usual={"T": 0.5, "mT": 1e4})
 REMANENCE = _dimension(
     "remanence",
     {**_TESLA, "A/m": _VACUUM_PERMEABILITY, "kA/m": _KILOAMPERE, "emu/cm^3": _KILOAMPERE},
     _SHOWN_TESLA,
+    usual={"T": 2.0, "mT": 1e4},
 )
 """A remanent flux density, also as the magnetisation M that makes it: mu0 M."""
-ANGLE = _dimension("angle", {"rad": "1", "deg": _DEGREE}, {"deg": 0.0})
+ANGLE = _dimension("angle", {"rad": "1", "deg": _DEGREE}, {"deg": 0.0}, usual={"rad": 3.2, "deg": math.inf})
 INVERSE_LENGTH = _dimension("inverse length", {"1/m": "1", "1/mm": "1e3"}, {"1/mm": 1e3, "1/m": 0.0})
 FORCE = _dimension(
     "force",
@@ -91,6 +103,7 @@ MOMENT = _dimension(
     "moment",
     {"N m": "1", "N mm": "1e-3", "mN m": "1e-3", "mN mm": "1e-6", "uN m": "1e-6", "µN m": "1e-6"},
     {"N m": 1.0, "N mm": 1e-6, "uN m": 0.0},
+    usual={"N mm": math.inf},
 )
 ACCELERATION = _dimension("acceleration", {"m/s^2": "1", "mm/s^2": "1e-3"}, {"m/s^2": 0.0})
 STIFFNESS = _dimension(
@@ -169,7 +182,7 @@ def parse(value: object, dimension: Dimension, unit: str | None = None) -> float
             return 0.0
         raise InputError(
             f"{quoted(value)} has no unit where a {dimension.name} is expected; write a string such as "
-            f'"{number} {next(iter(dimension.units))}" (units: {dimension.allowed})'
+            f'"{_as_written(value)} {_usual_unit(abs(float(number)), dimension)}" (units: {dimension.allowed})'
         )
     if found not in dimension.units:
         raise InputError(f"{quoted(value)} {_wrong_unit(found, dimension)}")
@@ -212,6 +225,9 @@ def _split(value: object, dimension: Dimension) -> tuple[Decimal, str]:
         raise InputError(f"{quoted(value)} is not a {dimension.name}; {_example(dimension)}")
     if _NOT_FINITE.match(value):
         raise InputError(f"{quoted(value)} is not a finite number")
+    if comma := _DECIMAL_COMMA.fullmatch(value):
+        point = f"{comma[1] or 0}.{comma[2]}{comma[3]}"
+        raise InputError(f'{quoted(value)} has a decimal comma; write a point: "{shortened(point)}"')
     match = _NUMBER.fullmatch(value)
     if match is None:
         raise InputError(f"{quoted(value)} does not begin with a number; {_example(dimension)}")
@@ -232,21 +248,31 @@ def _wrong_unit(found: str, dimension: Dimension) -> str:
             f"is a magnetisation or field strength where a {dimension.name} is expected: in air 1 kA/m belongs to "
             f"1.2566 mT (units: {dimension.allowed})"
         )
+    if _FRACTION.match("1" + found):
+        return "is a fraction; write a decimal number"
     for other in QUANTITIES:
         if found in other.units:
             return f"is a {other.name} where a {dimension.name} is expected (units: {dimension.allowed})"
-    names = list(dimension.units)
-    near = [name for name in names if name.casefold() == found.casefold()]
-    near = near or difflib.get_close_matches(found, names, n=1, cutoff=0.5)
-    hint = f"; did you mean '{near[0]}'?" if near else ""
+    near = nearest(found, dimension.units)
+    hint = f"; did you mean '{near}'?" if near else ""
     return f"has the unknown unit '{shortened(found)}'{hint} (units of {dimension.name}: {dimension.allowed})"
 
 
 def _example(dimension: Dimension) -> str:
     if not dimension.units:
         return "write a number such as 0.5"
-    unit = next(iter(dimension.units))
+    unit = _usual_unit(1.0, dimension)
     return f'write a number with its unit, such as "1 {unit}" (units: {dimension.allowed})'
+
+
+def _usual_unit(magnitude: float, dimension: Dimension) -> str:
+    """Unit in which people have numbers of this size."""
+    return next((unit for unit, most in dimension.usual if magnitude < most), next(iter(dimension.units)))
+
+
+def _as_written(value: object) -> str:
+    """A number as somebody would write it: 30 for 30.0."""
+    return shortened(str(value).strip().removesuffix(".0"))
 
 
 def shortened(text: str) -> str:

@@ -148,6 +148,8 @@ LOADS = [
     (ms.Traction("all", (0.0, 0.0, 1.0)), None),
     (ms.Traction("all", (1.0, 0.0, 1.0)), "traction on 'all' (1 Pa, 0, 1 Pa) is 45° off the plane: beyond it acts"),
     (ms.Traction("far", (1.0, 0.0, 1.0)), None),
+    (ms.Traction(None, (0.0, 1.0, 1.0)), None),
+    (ms.Traction(None, (1.0, 0.0, 1.0)), "traction (1 Pa, 0, 1 Pa) is 45° off the plane: beyond it acts"),
     (ms.Pressure("all", 1.0), None),
     (ms.Moment("left", (1.0, 0.0, 0.0)), None),
     (ms.Moment("left", (0.0, 1.0, 0.0)), "moment on 'left' (0, 1 N m, 0) is 90° off the normal of the plane"),

@@ -21,6 +21,16 @@ def run(*arguments: str, **options: object) -> subprocess.CompletedProcess[str]:
     )
 
 
+def test_check_with_settings(capsys: pytest.CaptureFixture[str]) -> None:
+    setting = ["--set", "shell.thickness=0.5 mm", "--set", "field.magnitude=20 mT"]
+    assert cli.main(["check", "strip-10", *setting]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "thickness h 0.5 mm" in said
+    assert "flux density B (0, 0, 20 mT)" in said
+    assert cli.main(["check", "strip-10", "--set", "shell.thicknes=0.5 mm"]) == 2
+    assert "Did you mean 'thickness'" in capsys.readouterr().err
+
+
 def test_version_and_help_in_a_process() -> None:
     assert run("--version").stdout == f"magshell {version('magshell')}\n"
     without = run()

@@ -12,7 +12,9 @@ from rich.console import Console
 from solver.arches import arch, to_the_crown_at
 
 import magshell as ms
+from magshell import kernel_cache
 from magshell.kernel_cache import COMPILING, FIRST_USE, WAITING, log
+from magshell.kernel_messages import KernelMessages
 from magshell.progress import ProgressDisplay
 from magshell.solver import Settings
 
@@ -28,11 +30,11 @@ def said(model: ms.Model) -> tuple[ms.Path, list[str]]:
 @pytest.mark.parametrize("waits", [False, True])
 def test_a_first_use_is_told_by_one_line(monkeypatch: pytest.MonkeyPatch, waits: bool) -> None:
     """At its start: what is waited for, and how long, whatever comes first. Warnings are shown as ever."""
-    monkeypatch.setattr("magshell.progress.are_compiled", lambda: False)
+    monkeypatch.setattr("magshell.shell.loops.are_compiled", lambda: False)
     text = io.StringIO()
     with ProgressDisplay(Console(file=text, width=200, highlight=False, markup=False)):
         log.info(WAITING if waits else COMPILING, "the law Ogden")
-        monkeypatch.setattr("magshell.progress.are_compiled", lambda: True)
+        monkeypatch.setattr("magshell.shell.loops.are_compiled", lambda: True)
         for name in ("fill", "eliminate"):
             log.info(COMPILING, f"the kernel {name}")
         log.warning("the folder is full")
@@ -41,7 +43,7 @@ def test_a_first_use_is_told_by_one_line(monkeypatch: pytest.MonkeyPatch, waits:
 
 
 def test_a_further_law_is_told_by_its_name(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("magshell.progress.are_compiled", lambda: True)
+    monkeypatch.setattr("magshell.shell.loops.are_compiled", lambda: True)
     text = io.StringIO()
     with ProgressDisplay(Console(file=text, width=200, highlight=False, markup=False)):
         log.info(COMPILING, "the law Ogden")
@@ -50,6 +52,34 @@ def test_a_further_law_is_told_by_its_name(monkeypatch: pytest.MonkeyPatch) -> N
         "compiling the law Ogden (some seconds, once) ...",
         "waiting for another process that compiles the law Field (some seconds, once) ...",
     ]
+
+
+def test_every_command_tells_what_it_compiles() -> None:
+    """By the kernel's name; of the large one how long; a display of its own has the messages meanwhile."""
+    outer, inner = [], []
+    messages = KernelMessages(lambda text, style=None: outer.append(text))
+    display = KernelMessages(lambda text, style=None: inner.append(text))
+    messages.listen()
+    log.info(COMPILING, "the kernel _walk_rows")
+    display.listen()
+    log.info(COMPILING, "the law Ogden")
+    display.stop()
+    log.warning(FIRST_USE)
+    log.info(COMPILING, "the kernel fill")
+    messages.stop()
+    log.info(COMPILING, "the kernel unheard")
+    assert outer == ["compiling the kernel _walk_rows (some seconds, once) ...", FIRST_USE]
+    assert inner == ["compiling the law Ogden (some seconds, once) ..."]
+
+
+def test_a_program_without_a_display_is_told_of_the_large_kernels(caplog: pytest.LogCaptureFixture) -> None:
+    """By a warning, which Python writes to the terminal where nothing else is said of logging; once."""
+    context = SimpleNamespace(refresh=lambda: None)
+    kernel_cache._warn_once.cache_clear()
+    for name in ("_walk_rows", "fill", "predict_stresses"):
+        assert kernel_cache.Store(None, name, f"the kernel {name}").load_overload((), context) is None
+    kernel_cache._warn_once.cache_clear()
+    assert [record.message for record in caplog.records if record.levelname == "WARNING"] == [FIRST_USE]
 
 
 def test_one_stage() -> None:

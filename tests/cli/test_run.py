@@ -189,10 +189,11 @@ def test_progress_on_a_terminal(strip: str) -> None:
         "compiling a kernel ...",
         "warning: the folder is damaged",
         "100%",
-        "cut: too bold",
+        "step to 50 % is too large, trying a smaller one",
         "solved at 100 % (5 mT)",
     ):
         assert words in shown, f"{words!r} is not in {shown!r}"
+    assert "too bold" not in shown
     assert not re.search(r"step 1  \d", shown), "no line per step on a terminal"
     log.info("after the end")
     assert "after the end" not in text.getvalue()

@@ -33,6 +33,12 @@ def drawn(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, str, bool]]:
     return calls
 
 
+def test_settings(drawn: list[tuple[str, str, bool]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(["show", "strip-10", "--set", "shell.thickness=0.5 mm"]) == 0
+    assert drawn[0][1].endswith("(shell.thickness = 0.5 mm)")
+
+
 def test_names_of_pictures(
     drawn: list[tuple[str, str, bool]],
     tmp_path: Path,

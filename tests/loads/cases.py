@@ -38,6 +38,8 @@ class Case(NamedTuple):
 def _cases() -> dict[str, Case]:
     cases = {
         "traction": Case(ms.Traction("half", V)),
+        "traction on all": Case(ms.Traction(None, V)),
+        "pressure on all": Case(ms.Pressure(None, -0.8), turns=True, conservative=False),
         "pressure": Case(ms.Pressure("half", -0.8), turns=True, conservative=False),
         "gravity": Case(ms.Gravity(V)),
         "gravity of a group": Case(ms.Gravity(V, "half")),

@@ -34,7 +34,7 @@ def test_elements_of_a_curved_mesh():
 @pytest.mark.parametrize(
     ("ranges", "words"),
     [
-        ({}, "give at least one of the ranges x1, x2, x3, or groups"),
+        ({}, "give at least one of the ranges x1, x2, x3, shapes or groups"),
         ({"x1": (1.5, 4.0)}, r"an element, from \(1, .*\) m? ?to .*lies across a bound of the range"),
         ({"x1": (5.0, 6.0)}, "no element lies there; the mesh spans"),
         ({"x1": (1.0, 1.0)}, r"x1 is \[1.0, 1.0\]; it must be a least and a greatest coordinate"),

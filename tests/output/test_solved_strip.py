@@ -13,8 +13,11 @@ import magshell as ms
 from magshell.errors import InputError
 from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import OUTPUTS, chosen
+from magshell.output.curve import displacements
 from magshell.output.history import HistoryWriter
 from magshell.output.pictures import draw_pictures
+from magshell.output.series import chosen as series_chosen
+from magshell.output.series import groups
 from magshell.output.summary import write_summary
 from magshell.output.vtu import VtuWriter
 
@@ -160,3 +163,24 @@ def test_summary_has_reactions_and_energies(results):
     assert summary["elastic"] == last.energies[:, 0].sum()
     assert summary["magnetic"] is None
     assert summary["magnetic_torque"] == path.steps[-1].balance.magnetic_torque.tolist()
+
+
+def test_what_is_nothing_but_round_off_is_drawn_as_zero():
+    """A field along the remanence bends nothing: curves of 1e-20 mm and stresses of 1e-8 Pa are no result."""
+    shell = ms.Shell(
+        ms.mesh.rectangle(LENGTH, 5e-3, elements=(4, 1)),
+        thickness=THICKNESS,
+        material=ms.MicropolarNeoHookean(303e3, 7.3e6, 30.3e3, THICKNESS / 10),
+        remanence=ms.remanence.constant([0.3 * REMANENCE, 0, 0.4 * REMANENCE]),
+    )
+    field = ms.UniformField(np.array([3e-3, 0, 4e-3]))
+    path = ms.solve(ms.Model(shell, [ms.Clamp("left")], field, probes={"tip": (LENGTH, 0, 0)}))
+    noisy = np.array([step.state.u for step in path.steps])
+    noisy += 1e-15 * LENGTH * np.sin(np.arange(noisy.size)).reshape(noisy.shape)
+    for step, u in zip(path.steps, noisy, strict=True):
+        step.state.u[:] = u
+    for curve in displacements(path):
+        assert not curve.values.any()
+    for group in groups(path):
+        assert group.unit not in ("", "kPa", "Pa", "MPa", "J"), group
+    assert not series_chosen(path, ["max_von_mises"]).curves[0].values.any()

@@ -55,6 +55,11 @@ BROKEN = [
     Broken("misspelt unit", '"303 kPa"', '"303 Kpa"', "material.shear_modulus", ("'Kpa'", "'kPa'")),
     Broken("no number", '"303 kPa"', '"soft"', "material.shear_modulus", ("'soft'", "number")),
     Broken("stop in mm", '"1 mT", "2 mT"', '"1 mm", "2 mT"', "field.stops[0]", ("length", "flux density")),
+    # the field
+    Broken("field without direction", 'flux_density = [0, 0, "2 mT"]', 'magnitude = "2 mT"', "field.direction", ("is missing beside magnitude",)),
+    Broken("field twice", "stops", 'magnitude = "2 mT"\ndirection = [0, 0, 1]\nstops', "field.flux_density", ("beside magnitude",)),
+    Broken("field of nothing", 'flux_density = [0, 0, "2 mT"]', "", "field.flux_density", ("is missing; give it, or magnitude and direction",)),
+    Broken("stop beyond the magnitude", 'flux_density = [0, 0, "2 mT"]', 'magnitude = "1.5 mT"\ndirection = [0, 1, 1]', "field.stops[1]", ("beyond",)),
     # values
     Broken("negative thickness", '"1 mm"\n\n[mat', '"-1 mm"\n\n[mat', "shell.thickness", ("-1 mm", "not positive")),
     Broken("zero thickness", '"1 mm"\n\n[mat', "0\n\n[mat", "shell.thickness", ("not positive",)),
@@ -138,6 +143,7 @@ BROKEN = [
     Broken("neither field nor load", STRIP[STRIP.index("[field]") : STRIP.index("[[supports]]")], "", "field", ("zero", "nor is there a load", "nothing loads")),
     # supports and probes
     Broken("missing group", '"left"', '"lefft"', "supports[0].group", ("'lefft'", "'left'")),
+    Broken("name of a mesh file", '"left"', '"arm (left)/1+2"', "supports[0].group", ("'arm (left)/1+2' is not a name", "a mesh file calls so is 'arm _left__1+2' here")),
     Broken("empty group name", '"left"', '""', "supports[0].group", ("name",)),
     Broken("no supports table", CLAMP, "", "supports", ("missing",)),
     Broken("no supports", CLAMP, "", "supports", ("empty",), "supports = []\n" + STRIP),
@@ -190,7 +196,25 @@ BROKEN = [
     Broken("key twice", 'width = "5 mm"', 'width = "5 mm"\nwidth = "6 mm"', "", ("not valid TOML", "twice", "line 6")),
     Broken("table twice", "[field]", "[shell]\n[field]", "", ("not valid TOML", "twice", "line")),
     Broken("quote not closed", '"303 kPa"', '"303 kPa', "", ("not valid TOML", "line 16")),
-    Broken("unit outside the quotes", '"303 kPa"', "303 kPa", "", ("not valid TOML", "line 16")),
+    Broken("unit outside the quotes", '"303 kPa"', "303 kPa", "", ("not valid TOML", "line 16", 'in quotes: shear_modulus = "303 kPa"')),
+    Broken("comma and no quotes", 'thickness = "1 mm"', "thickness = 0,8 mm", "", ("line 12", 'in quotes: thickness = "0.8 mm"')),
+    Broken("name without quotes", '"clamp"', "clamp  # here", "", ("not valid TOML", 'in quotes: kind = "clamp"')),
+    Broken("unit outside the quotes in a list", '"143 mT"', "143 mT", "", ("not valid TOML", "in quotes, also in a list")),
+    # what is called otherwise, stands elsewhere or does not exist
+    Broken("two materials", "[material]", "[[material]]", "material", ("one [material] only", "further materials belong to [[regions]]")),
+    Broken("list of meshes", "[mesh]", "[[mesh]]", "mesh", ("one [mesh] only",), STRIP.replace("[mesh.edge_groups]\nfar = { x1 = \"20 mm\" }\n", "")),
+    Broken("shell as text", '[shell]\nthickness = "1 mm"\n', "", "shell", ("not a table", "write [shell]"), 'shell = "1 mm"\n' + STRIP),
+    Broken("list of fields", "[field]", "[[field]]", "field", ("one [field] only",)),
+    Broken("list of probes", "[probes]", "[[probes]]", "probes", ("one [probes] only", "tip = [")),
+    Broken("magnets", "[probes]", "[[magnets]]\n[probes]", "magnets", ("Did you mean 'remanence'",)),
+    Broken("contact", "[probes]", "[contact]\n[probes]", "contact", ("there is no contact",)),
+    Broken("density of the material", "shear_modulus", "density", "material.density", ("belongs to [shell]",)),
+    Broken("fixed", '"clamp"', '"fixed"', "supports[0].kind", ("'fixed'", "Did you mean 'clamp'")),
+    Broken("pinned", '"clamp"', '"pinned"', "supports[0].kind", ("Did you mean 'simple'",)),
+    Broken("type of a support", 'kind = "clamp"', 'type = "clamp"', "supports[0].kind", ("is missing", "'type' in its place")),
+    Broken("element type", "[shell]", '[shell]\nelement = "quad"', "shell.element", ("did you mean 'quadratic'",)),
+    Broken("decimal comma", '"1 mm"\n\n[material]', '"0,8 mm"\n\n[material]', "shell.thickness", ("decimal comma", '"0.8 mm"')),
+    Broken("bare number", '"1 mm"\n\n[material]', "30\n\n[material]", "shell.thickness", ("no unit", '"30 mm"')),
 ]  # fmt: skip
 
 

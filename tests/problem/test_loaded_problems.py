@@ -16,6 +16,7 @@ from magshell import problem
 from magshell.cli import main
 from magshell.problem.building import build
 from magshell.problem.reading import check, parse
+from magshell.problem.report import describe
 from magshell.shell.state import State
 from problem.loaded import EVERY_LOAD
 
@@ -47,6 +48,16 @@ def test_loads_beside_a_field() -> None:
     model = built(changed(LOADED, ("[[supports]]", field))).model
     assert model.field.magnitude == 2e-3
     assert at_rest(model).sum(axis=0)[2] == pytest.approx(2e-3, rel=1e-14)
+
+
+def test_loads_on_areas_act_on_the_whole_shell_by_default() -> None:
+    loads = '[[loads]]\nkind = "{}"\n{} = {}\n\n'
+    areas = loads.format("pressure", "pressure", '"4 Pa"') + loads.format("traction", "traction", '[0, 0, "2 Pa"]')
+    found = built(changed(LOADED, (LOADED[LOADED.index("[[loads]]") : LOADED.index("[[supports]]")], areas)))
+    assert [load.group for load in found.model.loads] == [None, None]
+    assert at_rest(found.model).sum(axis=0)[2] == pytest.approx(6.0 * 20e-3 * 5e-3, rel=1e-12)
+    lines = dict(describe(found).sections["Loads"])
+    assert lines["whole shell"].startswith("traction (0, 0, 2 Pa), 4 elements")
 
 
 def test_every_key_reaches_the_model() -> None:

@@ -4,13 +4,15 @@
 
 from __future__ import annotations
 
+import html
+
 import numpy as np
 import pytest
 from problem_files import BLOCKS, LOADED, PUMP, STRIP, changed
 
 from magshell import problem
 from magshell.mesh import rectangle, split
-from magshell.problem import triangle_report
+from magshell.model.doubts import triangles
 from magshell.problem.building import build
 from magshell.problem.copies import digest
 from magshell.problem.reading import check, parse
@@ -132,6 +134,7 @@ def test_a_history_counts_by_its_largest_multiplier() -> None:
     assert found == pytest.approx(expected, rel=2e-3)
 
 
+METRES, MICROMETRES = STRIP.replace(" mm", " m"), STRIP.replace(" mm", " um").replace("20 um", "8 um")
 DOUBTS = [
     (STRIP, '"1 mm"\n\n[mat', '"5 mm"\n\n[mat', "too thick for a shell"),
     (STRIP, '"1 mm"\n\n[mat', '"1 um"\n\n[mat', "thinner than any film"),
@@ -141,7 +144,21 @@ DOUBTS = [
     (STRIP, '"303 kPa"', '"303 GPa"', "stiffer than magnesium"),
     (STRIP, '"7300 kPa"', '"7300 MPa"', "nearly incompressible"),
     (STRIP, '["143 mT", 0, 0]', '[0, 0, "143 mT"]', "parallel to the remanence"),
+    (
+        STRIP,
+        '["143 mT", 0, 0]',
+        '[0, 0, "143 mT"]',
+        "so it stays as it is. Where it should buckle, try magshell buckling",
+    ),
     (STRIP, '"143 mT"', '"14 uT"', "hardly move"),
+    (
+        STRIP,
+        '"303 kPa"',
+        '"303 MPa"',
+        "turns the end of a strip of this length by 0.051 deg, so the shell will hardly move",
+    ),
+    (METRES, '"2 mT"]\nst', '"3 mT"]\nst', "the shell is 20 m long: larger than what moves in a magnetic field"),
+    (MICROMETRES, 'width = "5 um"', 'width = "6 um"', "the shell is 8 um long: smaller than a cell"),
     (STRIP, 'tip = ["20 mm", 0, 0]', "", "no probes"),
     (LOADED, '"2 mN"', '"2 kN"', "loads beyond any experiment"),
     (LOADED, '"0.01 N mm"', '"10 N m"', "12 (F L + M) / (E h³)"),
@@ -171,17 +188,26 @@ def test_doubts(base: str, old: str, new: str, words: str) -> None:
     assert any(words in warning for warning in warnings), warnings
 
 
+def test_a_model_has_the_doubts_of_its_file() -> None:
+    """In Python, and in a notebook."""
+    text = changed(STRIP, ('"303 kPa"', '"303 Pa"'), ('["143 mT", 0, 0]', '[0, 0, "143 mT"]'))
+    model = build(check(parse(text, "test.toml"), "test.toml"), "test.toml").model
+    assert model.doubts() == report_of(text).warnings
+    assert len(model.doubts()) > 1
+    assert all(html.escape(doubt) in model._repr_html_() for doubt in model.doubts())
+
+
 @pytest.mark.parametrize(("divisions", "ratio"), [((10, 2), 4.4), ((20, 4), 2.2), ((40, 8), None)])
 def test_triangles_that_are_long_for_a_thin_shell(divisions: tuple[int, int], ratio: float | None) -> None:
     """Bent by a radian a strip of L/h = 1000 loses 8 to 11 % on the first mesh, 1 to 2 % on the second (the element page)."""
     plain = rectangle(1.0, 0.2, divisions)
-    assert not list(triangle_report.doubts(plain, 1e-3, np.inf))
+    assert not list(triangles.doubts(plain, 1e-3, np.inf))
     for pattern in ("rising", "alternating"):
-        told = list(triangle_report.doubts(split(plain, pattern), 1e-3, np.inf))
+        told = list(triangles.doubts(split(plain, pattern), 1e-3, np.inf))
         assert len(told) == (ratio is not None)
         if ratio is not None:
             assert f"{ratio} times √(radius × thickness): where the shell bends to a radius of its size" in told[0]
-    assert "where the shell is curved" in next(triangle_report.doubts(split(plain, "crossed"), 1e-3, 0.01))
+    assert "where the shell is curved" in next(triangles.doubts(split(plain, "crossed"), 1e-3, 0.01))
 
 
 def test_results_are_described_and_leave_the_path_alone() -> None:

@@ -7,12 +7,14 @@ import typing
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from problem_files import LOADED, STRIP, changed
 
 from magshell.errors import InputError
 from magshell.problem import examples, load, schema
 from magshell.problem.alternatives import MOST_VALUES, read_changes, read_setting, read_settings, value_of
+from magshell.problem.building import Problem, build
 from magshell.problem.changes import changed as with_values
 from magshell.problem.changes import put, vectors
 from magshell.problem.fields import (
@@ -104,6 +106,10 @@ def test_all_faults_are_listed() -> None:
     assert [line.split(":")[0] for line in str(error.value).splitlines()] == ["--set b", "--set a", "--set c"]
 
 
+def load_text(text: str) -> Problem:
+    return build(check(parse(text, "text.toml"), "text.toml"), "text.toml")
+
+
 def set_in(source: Source, **changes: Any) -> dict[str, Any]:
     values = {key.replace("__", "."): value_of(data) for key, data in changes.items()}
     return tomllib.loads(with_values(source, values).text)
@@ -117,6 +123,28 @@ def test_a_magnitude_keeps_the_direction() -> None:
     found = check(set_in(oblique, field__flux_density="10 mT"), "oblique.toml").field.flux_density
     length = (3e-3**2 + 0.04e-3**2) ** 0.5
     assert found == pytest.approx((3e-5 / length, 0.0, -0.04e-5 / length), rel=1e-14)
+
+
+def test_a_magnitude_and_a_direction() -> None:
+    """A field or remanence is changed under either name, whichever the file has."""
+    polar = SOURCE._replace(
+        text=changed(
+            STRIP,
+            ('flux_density = [0, 0, "2 mT"]', 'magnitude = "2 mT"\ndirection = [3, 0, 4]'),
+            ('vector = ["143 mT", 0, 0]', 'magnitude = "143 mT"\ndirection = [1, 0, 0]'),
+        )
+    )
+    for key in ("field.magnitude", "field.flux_density"):
+        text = with_values(polar, {key: value_of("1 mT")}).text
+        file = check(parse(text, "polar.toml"), "polar.toml")
+        assert file.field.vector == pytest.approx((0.6e-3, 0.0, 0.8e-3), rel=1e-15)
+        assert file.field.stops == (1e-3,)
+    assert set_in(SOURCE, field__magnitude="7 mT")["field"]["flux_density"] == [0, 0, "7 mT"]
+    for source in (SOURCE, polar):
+        for key in ("remanence[0].magnitude", "remanence[0].vector"):
+            text = with_values(source, {key: value_of("50 mT")}).text
+            vectors_of = load_text(text).model.shell.remanence_at_points
+            assert np.abs(vectors_of - [50e-3, 0, 0]).max() < 1e-15
 
 
 def test_a_magnitude_of_a_load() -> None:

@@ -10,10 +10,11 @@ from collections.abc import Sequence
 from importlib.metadata import version
 
 from magshell.cli import buckling, check, examples, export, mesh, plot, reproduce, run, show, sweep, view
-from magshell.cli.console import complain
+from magshell.cli.console import complain, console, say
 from magshell.cli.letters import write_readably
 from magshell.cli.status import BAD_INPUT, INTERRUPTED, NOT_SOLVED
 from magshell.errors import InputError, lacks_memory
+from magshell.kernel_messages import KernelMessages
 from magshell.openblas import allocate_buffers, is_limited
 
 COMMANDS = {
@@ -68,6 +69,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     # Commands say themselves what is doubtful.
     for part in ("magshell.model", "magshell.problem"):
         logging.getLogger(part).addHandler(logging.NullHandler())
+    kernels = KernelMessages(_say)
+    kernels.listen()
     try:
         allocate_buffers()
         return int(given.command(given))
@@ -98,6 +101,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
             "Please report it with the traceback that --debug shows."
         )
         return NOT_SOLVED
+    finally:
+        kernels.stop()
+
+
+def _say(text: str, style: str | None = None) -> None:
+    say(console(), text, style)
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -7,6 +7,7 @@ import pathlib
 
 from magshell.cli.console import complain, console, say, say_doubts, say_picture
 from magshell.cli.folders import made
+from magshell.cli.settings import add_settings
 from magshell.cli.status import NOT_SOLVED, SOLVED
 from magshell.units import ANGLE, FLUX_DENSITY, show
 
@@ -25,6 +26,7 @@ DIR receives buckling.csv and buckling/ (the modes, for ParaView and as pictures
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What follows the command."""
     parser.add_argument("problem", metavar="FILE|NAME", help="a problem file (.toml) or a built-in problem")
+    add_settings(parser)
     parser.add_argument("--out", metavar="DIR", required=True, help="folder for the results, made if missing")
     parser.add_argument("--modes", metavar="N", type=int, default=4, help="how many modes (default: 4)")
 
@@ -33,12 +35,13 @@ def run(given: argparse.Namespace) -> int:
     """Estimate, and write the modes."""
     from magshell.output.buckling import require_free, write_buckling
     from magshell.problem import load
+    from magshell.problem.alternatives import read_changes
     from magshell.problem.report import describe
     from magshell.progress import ProgressDisplay
     from magshell.solver.buckling import buckling
     from magshell.solver.path import SolveError
 
-    problem = load(given.problem)
+    problem = load(given.problem, read_changes(given.set))
     out = console()
     say(out, problem.title)
     say_doubts(out, describe(problem))

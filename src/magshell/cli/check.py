@@ -6,27 +6,31 @@ import argparse
 
 from magshell.cli.console import console, say, say_doubts
 from magshell.cli.memory import memory_line
+from magshell.cli.settings import add_settings
 from magshell.cli.status import SOLVED
 
 ABOUT = "say what a problem file means, without solving"
 EXAMPLES = """
 examples:
   magshell check gripper
-  magshell check my-arm.toml"""
+  magshell check my-arm.toml
+  magshell check my-arm.toml --set shell.thickness="0.8 mm\""""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What follows the command."""
     parser.add_argument("problem", metavar="FILE|NAME", help="a problem file (.toml) or a built-in problem")
+    add_settings(parser)
 
 
 def run(given: argparse.Namespace) -> int:
     """Say what was understood."""
     from magshell.problem import load
+    from magshell.problem.alternatives import read_changes
     from magshell.problem.report import describe
     from magshell.solver.memory import memory_free, need_of
 
-    problem = load(given.problem)
+    problem = load(given.problem, read_changes(given.set))
     report = describe(problem)
     need = need_of(problem.model, problem.settings.linear_solver)
     report.sections["Mesh"].append(("memory of a solve", memory_line(need.memory, memory_free())))

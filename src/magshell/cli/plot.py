@@ -24,11 +24,13 @@ examples:
   magshell plot results --steps all --out pictures
   magshell plot results --curves foot.R3,foot.R1     these columns of history.csv in curve.png
   magshell plot results --animate shape.gif          besides, the path as an animation
+  magshell plot results --animate shape.gif --seconds 8 --smooth --camera 1,-1,0.5
   magshell plot results --animate shape.mp4          as a video: pip install 'magshell[video]'
 
 Without --steps the shapes are spread evenly along the path. All of them are seen by one camera, in one scale of colours
 and true to scale. OUTPUT is a name or symbol of the results: u3, u, energy, rotation, thickness_ratio, remanence, ...
 Every frame of an animation is a converged step, seen for as long as the path is to the next one; the last is held.
+--smooth interpolates linearly between the steps.
 A run that was interrupted, or that is still going on, is drawn as far as it came."""
 
 
@@ -39,6 +41,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--steps", metavar="N,N,...", help="numbers of steps, negative from the end; or: all")
     parser.add_argument("--curves", metavar="NAME,NAME,...", help="columns of history.csv to draw, all of one unit")
     parser.add_argument("--animate", metavar="FILE", help="also write an animation: .gif, or .mp4 with an extra")
+    parser.add_argument("--seconds", metavar="S", type=float, default=4.0, help="length of the animation (default: 4)")
+    parser.add_argument("--smooth", action="store_true", help="also frames between the steps, linearly interpolated")
+    parser.add_argument("--camera", metavar="X,Y,Z", help="direction from the body to the camera, such as 0,-1,0")
     parser.add_argument("--out", metavar="DIR", help="folder of the pictures (default: the results folder)")
 
 
@@ -54,6 +59,7 @@ def run(given: argparse.Namespace) -> int:
     from magshell.results import is_one, read
 
     find(given.color)
+    camera = _camera(given.camera)
     if given.animate:
         require_writer(given.animate)
     path = read(given.directory).path
@@ -71,17 +77,31 @@ def run(given: argparse.Namespace) -> int:
     say(out, f"picture: {directory / 'curve.png'}")
     try:
         with bar(out, "drawing shapes") as advance:
-            files = draw_steps(path, steps, directory, given.color, advance)
+            files = draw_steps(path, steps, directory, given.color, advance, camera)
         for file in files:
             say(out, f"picture: {file}")
         if given.animate:
             with bar(out, "drawing the frames of the animation") as advance:
-                file = animate(path, given.animate, given.color, advance)
+                file = animate(path, given.animate, given.color, advance, given.seconds, camera, given.smooth)
             say(out, f"animation: {file} ({file.stat().st_size / 1e6:.2g} MB)")
     except RenderingUnavailable as unavailable:
         complain(str(unavailable))
         return NOT_SOLVED
     return SOLVED
+
+
+def _camera(text: str | None) -> list[float] | None:
+    """The direction that a user asks for."""
+    from magshell.output.scene import axes_from
+
+    if text is None:
+        return None
+    try:
+        direction = [float(part) for part in text.split(",")]
+        axes_from(direction)
+    except ValueError:
+        raise InputError(f"--camera {text}: write three numbers, not all 0, such as 1,-1,0.5") from None
+    return direction
 
 
 def _steps(path: Path, text: str | None) -> list[Step]:

@@ -16,6 +16,7 @@ from magshell.cli.console import complain, console, say, say_doubts, say_picture
 from magshell.cli.folders import made
 from magshell.cli.memory import say_memory
 from magshell.cli.mesh import say_origin
+from magshell.cli.settings import add_settings
 from magshell.cli.status import INTERRUPTED, NOT_SOLVED, SOLVED
 from magshell.errors import InputError, lacks_memory
 from magshell.units import LENGTH, show
@@ -28,8 +29,6 @@ if TYPE_CHECKING:
     from magshell.problem.building import Problem
     from magshell.solver import Observer, Path
 
-# Displacements over the size of the body that are round-off.
-STILL = 1e-12
 _AT_THE_END = ("summary.json", "curve.png", "shape.png")
 
 ABOUT = "solve a problem and write the results"
@@ -49,9 +48,7 @@ kill, --resume goes on from the last one, to the same numbers as a run that was 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What follows the command."""
     parser.add_argument("problem", metavar="FILE|NAME", nargs="?", help="a problem file (.toml) or a built-in problem")
-    parser.add_argument(
-        "--set", metavar="KEY=VALUE", action="append", default=[], help="another value for a key (repeatable)"
-    )
+    add_settings(parser)
     folder = parser.add_mutually_exclusive_group(required=True)
     folder.add_argument("--out", metavar="DIR", help="folder for the results, made if missing")
     folder.add_argument("--resume", metavar="DIR", help="go on with the run in this folder (no FILE then)")
@@ -234,6 +231,8 @@ def _forget_earlier_run(out: Console, directory: pathlib.Path) -> None:
 
 def _say_still(out: Console, path: Path) -> None:
     """That a path to its end has moved nothing, if so."""
+    from magshell.output.rounding import STILL
+
     size = path.model.shell.mesh.size
     largest = max(float(abs(step.state.u).max()) for step in path.steps)
     if path.converged and largest <= STILL * size:

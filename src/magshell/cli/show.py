@@ -7,6 +7,7 @@ import pathlib
 
 from magshell.cli.console import complain, console, say, say_doubts
 from magshell.cli.folders import made
+from magshell.cli.settings import add_settings
 from magshell.cli.status import NOT_SOLVED, SOLVED
 from magshell.errors import InputError
 
@@ -15,12 +16,14 @@ EXAMPLES = """
 examples:
   magshell show gripper                             writes gripper-show.png
   magshell show my-arm.toml --out pictures/arm.png
+  magshell show my-arm.toml --set remanence[0].magnitude="60 mT"
   magshell show my-flower.toml --template           the shape in which it was magnetised"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What follows the command."""
     parser.add_argument("problem", metavar="FILE|NAME", help="a problem file (.toml) or a built-in problem")
+    add_settings(parser)
     parser.add_argument("--out", metavar="PICTURE.png", help="the picture; without it NAME-show.png in this folder")
     parser.add_argument(
         "--template",
@@ -35,9 +38,10 @@ def run(given: argparse.Namespace) -> int:
     from magshell.output.setup import draw_setup
     from magshell.output.style import is_ours
     from magshell.problem import load
+    from magshell.problem.alternatives import read_changes
     from magshell.problem.report import describe
 
-    problem = load(given.problem)
+    problem = load(given.problem, read_changes(given.set))
     out = console()
     say_doubts(out, describe(problem))
     ending = "template" if given.template else "show"

@@ -11,6 +11,7 @@ from magshell.mesh.generators import annulus, cylinder, rectangle, sphere_patch
 from magshell.mesh.mesh import Mesh
 from magshell.mesh.multiblock import blocks
 from magshell.mesh.origami import miura
+from magshell.mesh.shapes import in_cylinder, in_polygon, in_sphere
 from magshell.mesh.solids.mid_surface import mid_surface
 from magshell.mesh.triangles import split, triangle_rows
 
@@ -22,6 +23,9 @@ __all__ = [
     "cylinder",
     "from_cad",
     "from_drawing",
+    "in_cylinder",
+    "in_polygon",
+    "in_sphere",
     "mid_surface",
     "miura",
     "polygon",

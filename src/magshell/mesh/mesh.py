@@ -25,7 +25,7 @@ from magshell.mesh.checks import (
 )
 from magshell.mesh.edges import Edges, find_edges, is_triangle
 from magshell.mesh.geometry import COINCIDENT, centres, check_shapes, unit
-from magshell.mesh.ranges import Range, elements_between
+from magshell.mesh.selection import Coordinate, Range, Within, elements_there, items_there
 from magshell.mesh.unmatched import check_unmatched
 from magshell.mesh.wording import listing, place
 
@@ -174,6 +174,20 @@ class Mesh:
         fault = f"'{name}' is a group of {kind}s, not of elements" if kind else f"There is no element group '{name}'"
         raise InputError(f"{fault}. {suggest(name, self.element_groups)}")
 
+    def edges_of(self, name: str) -> IntArray:
+        """Edges (k, 3) of an edge group: end, end, middle.
+
+        Raises
+        ------
+        InputError
+            There is no edge group of that name; the message has the nearest one.
+        """
+        if name in self.edge_groups:
+            return self.edge_groups[name]
+        kind = self._kinds.get(name)
+        fault = f"'{name}' is a group of {kind}s, not of edges" if kind else f"There is no edge group '{name}'"
+        raise InputError(f"{fault}. {suggest(name, self.edge_groups)}")
+
     def nodes_of(self, name: str) -> IntArray:
         """Sorted node numbers of an element, edge or node group, mid-side nodes included.
 
@@ -226,41 +240,71 @@ class Mesh:
         return int(nodes[np.argmax(unit(np.array(towards)) @ off)])
 
     def select_edges(
-        self, name: str, x1: float | None = None, x2: float | None = None, x3: float | None = None
+        self,
+        name: str,
+        x1: Coordinate = None,
+        x2: Coordinate = None,
+        x3: Coordinate = None,
+        groups: Sequence[str] | None = None,
+        within: Within = None,
     ) -> Mesh:
-        """The same mesh and one more edge group: the boundary edges whose nodes have these coordinates.
+        """The same mesh and one more edge group: the boundary edges that lie there with all their nodes.
 
         Parameters
         ----------
         name : str
             Of the new group.
-        x1, x2, x3 : float or None
-            Coordinates, m, met to within 1e-6 of the size of the mesh; None leaves a coordinate free.
+        x1, x2, x3 : float, (float, float) or None
+            Coordinates, or least and greatest, m, met to within 1e-6 of the size of the mesh; None leaves one free.
+        groups : sequence of str, optional
+            Edge groups to choose from, in place of the boundary.
+        within : shape or sequence of shapes, optional
+            See `magshell.mesh.in_sphere`, `in_cylinder`, `in_polygon`; or a function of positions (k, 3), m, that
+            says for each whether it lies inside, or how far outside, m.
 
         Raises
         ------
         InputError
-            No boundary edge is there, no coordinate is given, or the name is taken.
+            No such edge is there, nothing is given, a coordinate or group makes no sense, or the name is taken.
         """
-        edges = self.boundary_edges
-        chosen = self._select(name, "edge", edges, self.points[edges], (x1, x2, x3))
-        return self._with_groups(edge_groups={**self.edge_groups, name: chosen})
+        if groups is not None:
+            edges = np.unique(np.concatenate([self.edges_of(group) for group in groups]), axis=0)
+        else:
+            edges = self.boundary_edges
+        what = "boundary edge" if groups is None else "edge of these groups"
+        chosen = self._there(name, what, self.points[edges], (x1, x2, x3), within, groups is not None)
+        return self._with_groups(edge_groups={**self.edge_groups, name: locked(edges[chosen])})
 
     def select_nodes(
-        self, name: str, x1: float | None = None, x2: float | None = None, x3: float | None = None
+        self,
+        name: str,
+        x1: Coordinate = None,
+        x2: Coordinate = None,
+        x3: Coordinate = None,
+        groups: Sequence[str] | None = None,
+        within: Within = None,
     ) -> Mesh:
-        """The same mesh with one more node group: the nodes, inside too, that have these coordinates.
+        """The same mesh with one more node group: the nodes, inside too, that lie there.
 
-        Parameters and errors are those of `select_edges`.
+        Parameters and errors are those of `select_edges`; `groups` may be of any kind.
         """
         nodes = np.arange(len(self.points))
-        chosen = self._select(name, "node", nodes, self.points[:, None], (x1, x2, x3))
-        return self._with_groups(node_groups={**self.node_groups, name: chosen})
+        if groups is not None:
+            nodes = np.unique(np.concatenate([self.nodes_of(group) for group in groups]))
+        what = "node" if groups is None else "node of these groups"
+        chosen = self._there(name, what, self.points[nodes, None], (x1, x2, x3), within, groups is not None)
+        return self._with_groups(node_groups={**self.node_groups, name: locked(nodes[chosen])})
 
     def select_elements(
-        self, name: str, x1: Range = None, x2: Range = None, x3: Range = None, groups: Sequence[str] | None = None
+        self,
+        name: str,
+        x1: Range = None,
+        x2: Range = None,
+        x3: Range = None,
+        groups: Sequence[str] | None = None,
+        within: Within = None,
     ) -> Mesh:
-        """The same mesh with one more element group: the elements between these coordinates, of some groups or of all.
+        """The same mesh with one more element group: the elements that lie there, of some groups or of all.
 
         Parameters
         ----------
@@ -270,11 +314,14 @@ class Mesh:
             Least and greatest coordinate, m, met to within 1e-6 of the size of the mesh; None leaves one free.
         groups : sequence of str, optional
             Element groups to choose from; by default the whole mesh.
+        within : shape or sequence of shapes, optional
+            As in `select_edges`; an element belongs to it if its centre does.
 
         Raises
         ------
         InputError
-            No such group, no element is there, one lies across a bound, nothing is given, or the name is taken.
+            No such group, no element is there, one lies across a bound of a range, nothing is given, or the name is
+            taken.
         """
         check_name(name, "element", self._kinds)
         members = np.arange(len(self.elements))
@@ -282,37 +329,31 @@ class Mesh:
             members = np.unique(np.concatenate([self.elements_of(group) for group in groups]))
         ranges = (x1, x2, x3)
         try:
-            if groups is None or any(bounds is not None for bounds in ranges):
-                members = members[elements_between(self.points, self.elements[members], ranges, self.size)]
+            if groups is None or within is not None or any(bounds is not None for bounds in ranges):
+                members = members[elements_there(self.points, self.elements[members], ranges, within)]
         except InputError as error:
             raise InputError(f"Group '{name}': {error}.") from None
-        chosen = locked(members)
-        return self._with_groups(element_groups={**self.element_groups, name: chosen})
+        return self._with_groups(element_groups={**self.element_groups, name: locked(members)})
 
-    def _select(
-        self, name: str, kind: str, items: IntArray, positions: FloatArray, wanted: tuple[float | None, ...]
+    def _there(
+        self,
+        name: str,
+        what: str,
+        positions: FloatArray,
+        wanted: Sequence[Coordinate],
+        within: Within,
+        of_groups: bool,
     ) -> IntArray:
-        """Those of `items` whose positions (items, nodes, 3) have the wanted coordinates, read-only."""
-        check_name(name, kind, self._kinds)
-        axes = [axis for axis in range(3) if wanted[axis] is not None]
-        if not axes:
-            raise InputError(f"Group '{name}': give at least one of the coordinates x1, x2, x3.")
-        what = "boundary edge" if kind == "edge" else "node"
-        if not len(items):
+        """Which of the items with these positions (items, nodes, 3) lie there."""
+        check_name(name, what.split()[0], self._kinds)
+        if not len(positions):
             raise InputError(f"Group '{name}': the surface is closed, it has no {what}.")
-        values = np.array([wanted[axis] for axis in axes], dtype=np.float64)
-        if not np.isfinite(values).all():
-            raise InputError(f"Group '{name}': coordinates must be finite, not {values.tolist()}.")
-        gap = np.abs(positions[:, :, axes] - values).max(axis=(1, 2))
-        chosen: IntArray = items[gap <= COINCIDENT * self.size]
-        if not len(chosen):
-            sought = ", ".join(f"X{axis + 1} = {wanted[axis]:.6g} m" for axis in axes)
-            raise InputError(
-                f"Group '{name}': no {what} has {sought}. The nearest is at "
-                f"{_places(positions[np.argmin(gap)])}; the mesh spans {place(self.points.min(axis=0))} to "
-                f"{place(self.points.max(axis=0))}."
-            )
-        return locked(chosen)
+        if of_groups and within is None and not any(value is not None for value in wanted):
+            return np.arange(len(positions))
+        try:
+            return items_there(what, positions, wanted, within, self.points)
+        except InputError as error:
+            raise InputError(f"Group '{name}': {error}.") from None
 
     def _with_groups(self, **groups: Mapping[str, IntArray]) -> Mesh:
         """A copy that shares the checked arrays."""
@@ -320,7 +361,3 @@ class Mesh:
         for kind, names in groups.items():
             object.__setattr__(other, kind, dict(names))
         return other
-
-
-def _places(positions: FloatArray) -> str:
-    return " to ".join(place(position) for position in positions[:2])

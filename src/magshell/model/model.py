@@ -17,7 +17,7 @@ from magshell.errors import InputError, NothingLoads, suggest
 from magshell.magnetics.deformation_gradient_energy import DeformationGradientEnergy
 from magshell.magnetics.field import UniformField
 from magshell.magnetics.micropolar_couple import MicropolarCouple
-from magshell.model import coupling_limit, symmetry
+from magshell.model import coupling_limit, doubts, symmetry
 from magshell.model.course import Amounts, Course, Loading
 from magshell.model.loads import Applied, Load
 from magshell.model.loads.mass import Mass, whole_mass
@@ -143,12 +143,22 @@ class Model:
         for fault in coupling_limit.reached(self.shell, self.coupling, self.largest_field):
             coupling_limit.logger.warning("%s", fault)
 
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "probe_nodes": dict(self.probe_nodes)}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state, probe_nodes=MappingProxyType(state["probe_nodes"]))
+
     def __repr__(self) -> str:
         parts = (self.shell, self.field, self.coupling, *self.loads, *self.supports, *self.springs)
         return "\n  ".join([f"Model({len(self.stages)} stages, {len(self.probes)} probes)", *map(repr, parts)])
 
     def _repr_html_(self) -> str:
         return str(drawing("model_html")(self))
+
+    def doubts(self) -> list[str]:
+        """Sentences, each of a slip that the model may have, as `magshell check` says them; empty: none is found."""
+        return doubts.doubts(self)
 
     def _check_targets(self) -> None:
         for stage in self.stages:

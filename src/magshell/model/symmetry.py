@@ -180,8 +180,9 @@ def _acts_in(mesh: Mesh, load: Load, plane: Plane) -> bool:
 
 def _ends_at(mesh: Mesh, load: Load, plane: Plane) -> bool:
     """Whether an element of its group has an edge in the plane."""
-    members = mesh.element_groups.get(str(load.group))
-    return members is not None and bool((np.isin(mesh.elements[members], plane.nodes).sum(axis=1) > 2).any())
+    whole = load.group is None and load.on == "elements"
+    members = mesh.elements if whole else mesh.elements[mesh.element_groups.get(str(load.group), [])]
+    return bool((np.isin(members, plane.nodes).sum(axis=1) > 2).any())
 
 
 def _shown(vector: FloatArray, dimension: Dimension) -> str:

@@ -24,11 +24,13 @@ from magshell.magnetics.remanence.sampled import AS_NEAR
 from magshell.magnetics.remanence.tables import Columns, duplicate, read_table
 from magshell.mesh import Mesh
 from magshell.mesh.geometry import centres
+from magshell.remembered import remembered
 
 Thickness: TypeAlias = Callable[[Mesh, FloatArray], FloatArray]
 """From the mesh and points of each of its elements, (elements, points, 3) in m, to the thickness there, in m."""
 
 
+@remembered
 def function(of_position: Callable[[FloatArray], ArrayLike]) -> Thickness:
     """A function of the reference position: takes points (n, 3) in m, returns thicknesses (n,) in m."""
 
@@ -44,6 +46,7 @@ def function(of_position: Callable[[FloatArray], ArrayLike]) -> Thickness:
     return sample
 
 
+@remembered
 def profile(along: ArrayLike, positions: ArrayLike, values: ArrayLike) -> Thickness:
     """Piecewise linear along a direction, constant beyond the first and the last position.
 
@@ -72,6 +75,7 @@ def profile(along: ArrayLike, positions: ArrayLike, values: ArrayLike) -> Thickn
     return lambda mesh, points: np.asarray(np.interp(points @ unit, at, thickness))
 
 
+@remembered
 def per_element(values: ArrayLike) -> Thickness:
     """One value (elements,), m, for each element."""
     thickness = np.array(values, dtype=float)
@@ -84,6 +88,7 @@ def per_element(values: ArrayLike) -> Thickness:
     return sample
 
 
+@remembered
 def per_node(values: ArrayLike) -> Thickness:
     """One value (nodes,), m, for each node; interpolated as the surface is."""
     thickness = np.array(values, dtype=float)
@@ -96,6 +101,7 @@ def per_node(values: ArrayLike) -> Thickness:
     return sample
 
 
+@remembered
 def at_places(places: ArrayLike, values: ArrayLike, stepped: bool = False, tolerance: float | None = None) -> Thickness:
     """Values at places, as a measurement gives them.
 
@@ -180,11 +186,17 @@ def from_file(
             raise InputError(f"{path.name}: has the columns {','.join(PLACE)}; length_unit must say in which unit")
         check_one_value_each(path, table, "Keep one of the lines")
         return at_places(factor(length_unit, units.LENGTH) * table.optional, values, stepped, tolerance)
+    return _by_rows(path.name, values)
+
+
+@remembered
+def _by_rows(name: str, values: FloatArray) -> Thickness:
+    """Of a file without places: a row for each node or for each element."""
 
     def sample(mesh: Mesh, points: FloatArray) -> FloatArray:
         if len(values) not in (len(mesh.points), len(mesh.elements)):
             raise InputError(
-                f"{path.name}: has {len(values)} rows and no places; the mesh has {len(mesh.points)} nodes and "
+                f"{name}: has {len(values)} rows and no places; the mesh has {len(mesh.points)} nodes and "
                 f"{len(mesh.elements)} elements"
             )
         return (per_node if len(values) == len(mesh.points) else per_element)(values)(mesh, points)

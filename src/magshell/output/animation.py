@@ -1,7 +1,8 @@
 """Pictures of many steps of a path, by one camera and in one scale of colours; and the path as an animation.
 
-Every frame of an animation is a converged step, nothing between steps is invented. Time runs evenly along the path (in
-arc length), so a step is shown until the path would be at the next one; the last is held.
+Every frame of an animation is a converged step, unless frames between them are asked for: these interpolate linearly
+between two steps. Time runs evenly along the path (in arc length), so a step is shown until the path would be at the
+next one; the last is held.
 """
 
 from __future__ import annotations
@@ -12,20 +13,24 @@ import pathlib
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
 from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import find
 from magshell.files import write_atomically
+from magshell.mesh.geometry import unit
 from magshell.output.labels import bar_title
-from magshell.output.scene import Camera, best_axes, darkroom, deformed, field_arrow, fit, lettered
+from magshell.output.scene import Camera, axes_from, best_axes, darkroom, deformed, field_arrow, fit, lettered
 from magshell.output.shape import INCHES, SCENE, colour_bar, colour_scale, shown_values, triad
-from magshell.output.skin import Skin, skin_of
+from magshell.output.skin import Placed, Skin, skin_of
 from magshell.output.style import ACCENT, DPI, INK, said
+from magshell.output.tessellation import Surface
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -38,35 +43,64 @@ SECONDS, HELD = 4.0, 1.5
 """Of the path from its first to its last step, and of the last step."""
 SHORTEST = 0.04
 """Of a step, s: steps nearer than this to the one before are left out of an animation."""
+LONGEST = 120.0
+"""Of a film, s."""
 RATE = 25
 """Pictures in a second of a video."""
 VIDEO = (".mp4", ".mov", ".m4v")
 
 
 class Frame(NamedTuple):
-    """A step of an animation and how long it is seen, s."""
+    """A picture of an animation: of a step, or of a share of the way from it to a later one; how long it is seen, s."""
 
     step: Step
     seconds: float
+    later: Step | None = None
+    share: float = 0.0
 
 
-def frames(path: Path) -> list[Frame]:
-    """The steps of an animation, with times in proportion to the length of the path to the next one."""
+def frames(path: Path, duration: float = SECONDS, smooth: bool = False) -> list[Frame]:
+    """The pictures of an animation, with times in proportion to the length of the path to the next one.
+
+    Parameters
+    ----------
+    path : Path
+    duration : float
+        From the first to the last step, s.
+    smooth : bool
+        Whether there are pictures between the steps, `RATE` in a second.
+    """
+    if smooth and path.steps[-1].arc_length > path.steps[0].arc_length:
+        return _between(path, duration)
     places = np.array([step.arc_length for step in path.steps])
     if places[-1] <= places[0]:
         return [Frame(step, HELD) for step in path.steps[-1:]]
-    times = SECONDS * (places - places[0]) / (places[-1] - places[0])
+    times = duration * (places - places[0]) / (places[-1] - places[0])
     kept = [0]
     for number in range(1, len(times) - 1):
         if times[number] - times[kept[-1]] >= SHORTEST and times[-1] - times[number] >= SHORTEST:
             kept.append(number)
     kept.append(len(times) - 1)
     seconds = [*np.diff(times[kept]).tolist(), HELD]
-    return [Frame(path.steps[number], duration) for number, duration in zip(kept, seconds, strict=True)]
+    return [Frame(path.steps[number], each) for number, each in zip(kept, seconds, strict=True)]
+
+
+def _between(path: Path, duration: float) -> list[Frame]:
+    """Pictures at an even rate, each on the way from one step to the next."""
+    places = np.array([step.arc_length for step in path.steps])
+    count = max(round(RATE * duration), 1)
+    found = []
+    for place in np.linspace(places[0], places[-1], count, endpoint=False):
+        number = int(np.searchsorted(places, place, side="right")) - 1
+        share = float((place - places[number]) / (places[number + 1] - places[number]))
+        found.append(Frame(path.steps[number], duration / count, path.steps[number + 1], share))
+    return [*found, Frame(path.steps[-1], HELD)]
 
 
 @contextmanager
-def film(path: Path, steps: Sequence[Step], color: str, dpi: int = DPI) -> Iterator[Callable[[Step], Image]]:
+def film(
+    path: Path, steps: Sequence[Step], color: str, dpi: int = DPI, camera: ArrayLike | None = None
+) -> Iterator[Callable[[Frame], Image]]:
     """Draw steps by one camera, which sees all of them, with one plotter.
 
     Parameters
@@ -78,16 +112,18 @@ def film(path: Path, steps: Sequence[Step], color: str, dpi: int = DPI) -> Itera
         Output that colours the shape, as in `magshell.evaluation.outputs.find`.
     dpi : int
         Size of the pictures: `magshell.output.shape.INCHES` times this, even numbers.
+    camera : (3,) array_like, optional
+        Direction from the body to the camera; by default the best of a few.
 
     Yields
     ------
     callable
-        From one of the steps to its picture.
+        From a frame of these steps to its picture.
 
     Raises
     ------
     InputError
-        No such output.
+        No such output, or a camera that is no direction.
     RenderingUnavailable
         This machine cannot draw without a screen; the message says what to install.
     """
@@ -101,21 +137,33 @@ def film(path: Path, steps: Sequence[Step], color: str, dpi: int = DPI) -> Itera
     values = {step.number: each for step, each in zip(steps, shown, strict=True)}
     colours = ScalarMappable(*colour_scale(np.array([f(v) for v in values.values() for f in (np.min, np.max)])))
     shape = round(dpi * INCHES[0] * SCENE[2]), round(dpi * INCHES[1] * SCENE[3])
-    camera, arrows = _look(path, steps, skin, shape)
-    front = _front(camera, colours, bar_title(output, component), dpi)
+    seen, arrow_of = _look(path, steps, skin, shape, camera)
+    front = _front(seen, colours, bar_title(output, component), dpi)
 
-    with darkroom(camera, shape, quick=True) as expose:
+    @lru_cache(maxsize=2)
+    def placed(number: int) -> Placed:
+        return skin.placed(converged(path.discretisation, path.steps[number]))
 
-        def picture(step: Step) -> Image:
-            rgb = colours.to_rgba(values[step.number], bytes=True)[:, :3]
-            arrow = arrows[step.number]
-            placed = skin.placed(converged(path.discretisation, step))
-            scene = expose(deformed(mesh, placed, rgb, arrow, camera))
+    with darkroom(seen, shape, quick=True) as expose:
+
+        def picture(frame: Frame) -> Image:
+            number, field = frame.step.number, frame.step.flux_density
+            body, shown = placed(number), values[number]
+            if frame.later is not None:
+                after = frame.later.number
+                body = _mixed(body, placed(after), frame.share)
+                shown, field = (
+                    one + frame.share * (other - one)
+                    for one, other in ((shown, values[after]), (field, frame.later.flux_density))
+                )
+            arrow = arrow_of(field)
+            rgb = colours.to_rgba(shown, bytes=True)[:, :3]
+            scene = expose(deformed(mesh, body, rgb, arrow, seen))
             whole = images.new("RGBA", front.size, "white")
             whole.alpha_composite(images.fromarray(scene), (0, front.height - shape[1]))
             whole.alpha_composite(front)
-            head = None if arrow is None else _beyond(camera.on_picture(arrow), shape, front.height)
-            _letter(whole, step, head, dpi)
+            head = None if arrow is None else _beyond(seen.on_picture(arrow), shape, front.height)
+            _letter(whole, f"step {number}", field, head, dpi)
             return whole.convert("RGB")
 
         yield picture
@@ -135,6 +183,7 @@ def draw_steps(
     directory: str | os.PathLike[str],
     color: str = "u3",
     advance: Callable[[float], None] = lambda share: None,
+    camera: ArrayLike | None = None,
 ) -> list[pathlib.Path]:
     """Draw `shape-NNNN.png` for steps of a path, all by one camera and in one scale of colours.
 
@@ -146,10 +195,10 @@ def draw_steps(
         The disk refuses; the message names the file.
     """
     files = []
-    with film(path, steps, color) as picture:
+    with film(path, steps, color, camera=camera) as picture:
         for number, step in enumerate(steps, start=1):
             content = io.BytesIO()
-            picture(step).save(content, format="png", optimize=True, pnginfo=said())
+            picture(Frame(step, 0.0)).save(content, format="png", optimize=True, pnginfo=said())
             files.append(pathlib.Path(directory) / f"shape-{step.number:04d}.png")
             write_atomically(files[-1], content.getvalue())
             advance(number / len(steps))
@@ -161,6 +210,9 @@ def animate(
     file: str | os.PathLike[str],
     color: str = "u3",
     advance: Callable[[float], None] = lambda share: None,
+    seconds: float = SECONDS,
+    camera: ArrayLike | None = None,
+    smooth: bool = False,
 ) -> pathlib.Path:
     """Write the path as an animation.
 
@@ -174,6 +226,12 @@ def animate(
         Output that colours the shape, as in `magshell.evaluation.outputs.find`; one scale for all frames.
     advance : callable
         Told the share of the work that is done.
+    seconds : float
+        From the first to the last step, s; the last one is held for `HELD`.
+    camera : (3,) array_like, optional
+        Direction from the body to the camera, such as (0, -1, 0) for a view along X2; by default the best of a few.
+    smooth : bool
+        Whether shapes, colours and field between the steps are drawn as well, linearly interpolated.
 
     Returns
     -------
@@ -183,7 +241,8 @@ def animate(
     Raises
     ------
     InputError
-        No such output, a suffix that is none of these, or a video without the extra.
+        No such output, a suffix that is none of these, or a video without the extra; a time that is not positive; a
+        camera that is no direction.
     RenderingUnavailable
         This machine cannot draw without a screen; the message says what to install.
     OSError
@@ -191,11 +250,13 @@ def animate(
     """
     target = pathlib.Path(file)
     write = require_writer(target)
-    shown = frames(path)
-    pictures = []
-    with film(path, [frame.step for frame in shown], color, FILM_DPI) as picture:
+    if not 0.0 < seconds <= LONGEST:
+        raise InputError(f"seconds is {seconds!r}; a film takes more than 0 and at most {LONGEST:g} s")
+    shown = frames(path, seconds, smooth)
+    pictures, numbers = [], {each.number for frame in shown for each in (frame.step, frame.later) if each is not None}
+    with film(path, [path.steps[number] for number in sorted(numbers)], color, FILM_DPI, camera) as picture:
         for number, frame in enumerate(shown, start=1):
-            pictures.append(picture(frame.step))
+            pictures.append(picture(frame))
             advance(number / len(shown))
     write_atomically(target, write(pictures, [frame.seconds for frame in shown]))
     return target
@@ -253,23 +314,40 @@ def _video(pictures: Sequence[Image], seconds: Sequence[float], suffix: str) -> 
 
 
 def _look(
-    path: Path, steps: Sequence[Step], skin: Skin, shape: tuple[int, int]
-) -> tuple[Camera, dict[int, FloatArray | None]]:
-    """The camera of all steps, and the field arrow of each, as long as the field is strong."""
+    path: Path, steps: Sequence[Step], skin: Skin, shape: tuple[int, int], view: ArrayLike | None
+) -> tuple[Camera, Callable[[FloatArray], FloatArray | None]]:
+    """The camera of all steps, and the arrow of a field, as long as the field is strong."""
     mesh = path.discretisation.mesh
     places = [skin.extent(converged(path.discretisation, step)) for step in steps]
     extent = np.concatenate([mesh.points, *places])
-    axes = best_axes(np.vstack([mesh.points, mesh.points + steps[-1].state.displacement(len(mesh.points))]))
+    ends = np.vstack([mesh.points, mesh.points + steps[-1].state.displacement(len(mesh.points))])
+    axes = best_axes(ends) if view is None else axes_from(view)
     strongest = max(float(np.linalg.norm(step.flux_density)) for step in steps)
-    arrows: dict[int, FloatArray | None] = {}
-    for step in steps:
-        arrow = field_arrow(step.flux_density, extent, axes)
-        if arrow is not None:
-            share = 0.35 + 0.65 * float(np.linalg.norm(step.flux_density)) / strongest
-            arrow = arrow.mean(axis=0) + share * (arrow - arrow.mean(axis=0))
-        arrows[step.number] = arrow
-    letters = [lettered(arrow, axes) for arrow in arrows.values() if arrow is not None]
-    return fit(np.concatenate([extent, *letters]), axes, shape[0] / shape[1]), arrows
+
+    def arrow_of(field: FloatArray) -> FloatArray | None:
+        arrow = field_arrow(field, extent, axes)
+        if arrow is None:
+            return None
+        share = 0.35 + 0.65 * float(np.linalg.norm(field)) / strongest
+        return np.asarray(arrow.mean(axis=0) + share * (arrow - arrow.mean(axis=0)))
+
+    arrows = [arrow for step in steps if (arrow := arrow_of(step.flux_density)) is not None]
+    letters = [lettered(arrow, axes) for arrow in arrows]
+    return fit(np.concatenate([extent, *letters]), axes, shape[0] / shape[1]), arrow_of
+
+
+def _mixed(one: Placed, other: Placed, share: float) -> Placed:
+    """A share of the way from one to another."""
+    points, normals, inner, outer = (
+        a + share * (b - a)
+        for a, b in (
+            (one.surface.points, other.surface.points),
+            (one.surface.normals, other.surface.normals),
+            (one.inner, other.inner),
+            (one.outer, other.outer),
+        )
+    )
+    return Placed(Surface(points, unit(normals), one.surface.triangles), inner, outer)
 
 
 def _front(camera: Camera, colours: Any, title: str, dpi: int) -> Image:
@@ -294,20 +372,20 @@ def _beyond(ends: FloatArray, shape: tuple[int, int], height: int) -> FloatArray
     return np.asarray(head + 0.028 * height * along / max(float(np.linalg.norm(along)), 1e-9))
 
 
-def _letter(picture: Image, step: Step, head: FloatArray | None, dpi: int) -> None:
-    """The strength of the field above, and its letter beyond the arrow."""
+def _letter(picture: Image, name: str, field: FloatArray, head: FloatArray | None, dpi: int) -> None:
+    """The strength of the field and a name above, and the field's letter beyond the arrow."""
     from matplotlib.font_manager import FontProperties, findfont
     from PIL import ImageDraw, ImageFont
 
     points = dpi / 72
     draw = ImageDraw.Draw(picture)
     plain = findfont(FontProperties(family="DejaVu Sans"))
-    size = 1e3 * float(np.linalg.norm(step.flux_density))
+    size = 1e3 * float(np.linalg.norm(field))
     text = f"|B| = {size:.4g} mT" if size > 0 else "no field"
     place = 0.035 * picture.width, 0.06 * picture.height
     draw.text(place, text, INK, ImageFont.truetype(plain, 20 * points), anchor="lm")
     right = 0.86 * picture.width, 0.06 * picture.height
-    draw.text(right, f"step {step.number}", "#6b7280", ImageFont.truetype(plain, 13 * points), anchor="rm")
+    draw.text(right, name, "#6b7280", ImageFont.truetype(plain, 13 * points), anchor="rm")
     if head is not None:
         slanted = findfont(FontProperties(family="DejaVu Sans", style="oblique"))
         draw.text(tuple(head), "B", ACCENT, ImageFont.truetype(slanted, 16 * points), anchor="mm")

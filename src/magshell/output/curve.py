@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from magshell.arrays import FloatArray
+from magshell.output.rounding import STILL
 from magshell.output.series import COMPONENTS, Curve, chosen
 from magshell.output.style import ACCENT, COLOURS, DPI, TEXT, TICKS, deliver
 
@@ -121,13 +122,15 @@ def abscissa(path: Path, points: Sequence[Step | CriticalPoint] | None = None) -
 
 
 def displacements(path: Path, points: Sequence[Step | CriticalPoint] | None = None) -> list[Curve]:
-    """Every curve worth drawing, at points of the path or at its steps."""
+    """Every curve worth drawing, at points of the path or at its steps; one that is all round-off is zero."""
     states = [point.state for point in (path.steps if points is None else points)]
+    noise = STILL * path.model.shell.mesh.size
     probes = {name: np.array([state.u[node] for state in states]) for name, node in path.model.probe_nodes.items()}
+    probes = {name: np.where(np.abs(u).max(axis=0) > noise, u, 0.0) for name, u in probes.items()}
     if not probes:
         largest = np.array([np.linalg.norm(state.u, axis=1).max() for state in states])
         style = {"color": COLOURS[0], "linestyle": "-", "marker": "o", "linewidth": 2.0}
-        return [Curve("largest", "|u|", None, largest, style)]
+        return [Curve("largest", "|u|", None, largest * bool(largest.max() > noise), style)]
     threshold = NEGLIGIBLE * max(np.abs(u).max() for u in probes.values())
     found = []
     for number, (name, u) in enumerate(probes.items()):

@@ -52,9 +52,10 @@ def mesh_html(mesh: Mesh) -> str:
     return _page("Mesh", _picture(lambda: _mesh_figure(mesh)), _mesh_rows(mesh))
 
 
-def model_html(model: Model, title: str = "Model", doubts: Sequence[str] = ()) -> str:
-    """The mesh with its groups, the remanence as arrows and the field; shell, material, supports, loads, probes."""
-    return _page(title, _picture(lambda: _mesh_figure(model.shell.mesh, model)), _model_rows(model), doubts)
+def model_html(model: Model, title: str = "Model", doubts: Sequence[str] | None = None) -> str:
+    """The mesh with its groups, the remanence as arrows and the field; what it is made of, and its doubts."""
+    said = model.doubts() if doubts is None else doubts
+    return _page(title, _picture(lambda: _mesh_figure(model.shell.mesh, model)), _model_rows(model), said)
 
 
 def path_html(path: Path) -> str:

@@ -12,6 +12,9 @@ from magshell.evaluation.outputs import Output
 from magshell.solver.path import Path
 from magshell.solver.step import Step
 
+STILL = 1e-12
+"""Displacement, in sizes of the body, that is round-off."""
+
 
 def without_round_off(path: Path, outputs: Sequence[Output], steps: Iterable[Step]) -> Iterator[list[FloatArray]]:
     """Outputs at each step; what is nothing but rounding is zero.

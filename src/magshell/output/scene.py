@@ -13,8 +13,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from magshell.arrays import AnyArray, FloatArray
+from magshell.errors import InputError
 from magshell.output.rendering import require_rendering
 from magshell.output.skin import MOST_ELEMENTS_WITH_EDGES, Placed
 from magshell.output.style import ACCENT, INK, PALE
@@ -61,6 +63,27 @@ def viewing_axes(azimuth: float, elevation: float) -> FloatArray:
     return np.array([right, np.cross(towards, right), towards])
 
 
+def axes_from(camera: ArrayLike) -> FloatArray:
+    """The view from a direction, with X3 upwards, or X2 where it is along X3: rows right, up, towards the camera.
+
+    Raises
+    ------
+    InputError
+        Not three finite numbers, or all of them 0.
+    """
+    try:
+        towards = np.asarray(camera, dtype=float)
+    except (TypeError, ValueError):
+        towards = np.empty(0)
+    if towards.shape != (3,) or not np.isfinite(towards).all() or not towards.any():
+        raise InputError(f"camera is {camera!r}; it must be three numbers, the direction from the body to the camera")
+    towards = towards / np.linalg.norm(towards)
+    steep = abs(towards[2]) > 1.0 - 1e-9
+    right = np.cross([0.0, 1.0, 0.0] if steep else [0.0, 0.0, 1.0], towards)
+    right /= np.linalg.norm(right)
+    return np.array([right, np.cross(towards, right), towards])
+
+
 def best_axes(points: FloatArray) -> FloatArray:
     """The view, of a few from the front and above, in which these points spread over most of the picture."""
 
@@ -83,7 +106,12 @@ def fit(points: FloatArray, axes: FloatArray, aspect: float) -> Camera:
 
 
 def draw(
-    mesh: Mesh, placed: Placed, colours: AnyArray, field: FloatArray, shape: tuple[int, int]
+    mesh: Mesh,
+    placed: Placed,
+    colours: AnyArray,
+    field: FloatArray,
+    shape: tuple[int, int],
+    view: ArrayLike | None = None,
 ) -> tuple[AnyArray, Camera, FloatArray | None]:
     """Draw the deformed shell over its undeformed outline.
 
@@ -98,6 +126,8 @@ def draw(
         External flux density; only its direction is drawn, nothing if it is zero.
     shape : (int, int)
         Width and height of the picture, pixels.
+    view : (3,) array_like, optional
+        Direction from the body to the camera; by default the best of a few.
 
     Returns
     -------
@@ -113,7 +143,7 @@ def draw(
         This machine cannot draw without a screen.
     """
     extent = np.vstack([placed.surface.points, Tessellation(mesh.elements).at_points(mesh.points)])
-    axes = best_axes(extent)
+    axes = best_axes(extent) if view is None else axes_from(view)
     arrow = field_arrow(field, extent, axes)
     kept = extent if arrow is None else np.vstack([extent, lettered(arrow, axes)])
     camera = fit(kept, axes, shape[0] / shape[1])

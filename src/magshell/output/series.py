@@ -110,6 +110,10 @@ def chosen(path: Path, names: Sequence[str]) -> Group:
     ------
     InputError
         No such column, columns of several units, or one without numbers.
+
+    Notes
+    -----
+    A column that is all round-off is zero.
     """
     of = {name: series for series in SERIES.values() for name in series.columns(path.model)}
     units = {f"{probe}.u{i}": "m" for probe in path.model.probe_nodes for i in (1, 2, 3)}
@@ -128,7 +132,9 @@ def chosen(path: Path, names: Sequence[str]) -> Group:
             raise InputError(f"'{name}' is empty for this problem. {of[name].sentence if name in of else ''}".strip())
     kinds = {of[name].name if name in of else "displacement" for name in names}
     unit, factor = in_pictures(units[first])
-    return Group(", ".join(sorted(kinds)), unit, factor, _curves({name: numbers[name] for name in names}))
+    least = ROUND_OFF * _scale(path, units[first])
+    told = {name: numbers[name] * bool(np.abs(numbers[name]).max() > least) for name in names}
+    return Group(", ".join(sorted(kinds)), unit, factor, _curves(told))
 
 
 def _numbers(path: Path) -> dict[str, FloatArray]:
@@ -138,10 +144,17 @@ def _numbers(path: Path) -> dict[str, FloatArray]:
 
 
 def _scale(path: Path, unit: str) -> float:
-    """Largest sum of magnitudes of forces (N) or moments (N m) on the path; 0 for other units."""
+    """What a magnitude of this unit is round-off against, SI.
+
+    Of forces and moments it is the largest sum of magnitudes on the path, of stresses the shear modulus, of strains 1,
+    of energies that of a strain of the root of `ROUND_OFF`.
+    """
     balances = [balance for step in path.steps if (balance := step.balance) is not None]
-    field = {"N": "force_scale", "N m": "moment_scale"}.get(unit)
-    return max((getattr(balance, field) for balance in balances), default=0.0) if field else 0.0
+    if field := {"N": "force_scale", "N m": "moment_scale"}.get(unit):
+        return max((getattr(balance, field) for balance in balances), default=0.0)
+    shell = path.model.shell
+    modulus, thickness = float(shell.mean_of("shear_modulus").max()), max(part.at_nodes.max() for part in shell.parts)
+    return {"Pa": modulus, "": 1.0, "J": ROUND_OFF * modulus * thickness * shell.mesh.size**2}.get(unit, 0.0)
 
 
 def _curves(columns: dict[str, FloatArray]) -> list[Curve]:

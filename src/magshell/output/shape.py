@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError
@@ -33,7 +34,11 @@ SCENE = (0.0, 0.0, 0.865, 0.9)
 
 
 def draw_shape(
-    path: Path, file: str | os.PathLike[str] | None = "shape.png", step: int = -1, color: str = "u3"
+    path: Path,
+    file: str | os.PathLike[str] | None = "shape.png",
+    step: int = -1,
+    color: str = "u3",
+    camera: ArrayLike | None = None,
 ) -> Image | None:
     """Draw the deformed shape, true to scale, over the undeformed outline, with the field's direction.
 
@@ -47,6 +52,8 @@ def draw_shape(
     color : str
         Output that colours the shape: a name or symbol of `magshell.evaluation.outputs`, with the suffix of a component
         ("u3", "rotation", "thickness_ratio", "von_mises_top", "s11_top").
+    camera : (3,) array_like, optional
+        Direction from the body to the camera, such as (0, -1, 0) for a view along X2; by default the best of a few.
 
     Returns
     -------
@@ -56,7 +63,7 @@ def draw_shape(
     Raises
     ------
     InputError
-        No such step or output.
+        No such step or output, or a camera that is no direction.
     RenderingUnavailable
         This machine cannot draw without a screen; the message says what to install.
     OSError
@@ -75,7 +82,7 @@ def draw_shape(
     field = shown.flux_density
     pixels = (round(DPI * INCHES[0] * SCENE[2]), round(DPI * INCHES[1] * SCENE[3]))
     placed = skin.placed(converged(path.discretisation, shown))
-    scene, camera, arrow = draw(mesh, placed, rgb, field, pixels)
+    scene, seen, arrow = draw(mesh, placed, rgb, field, pixels, camera)
 
     figure = Figure(figsize=INCHES, dpi=DPI, facecolor="white")
     axes = figure.add_axes(SCENE)
@@ -86,8 +93,8 @@ def draw_shape(
     title = rf"$|B^\mathrm{{ext}}|$ = {size:.4g} mT" if size > 0 else "no field"
     figure.text(0.035, 0.94, title, va="center", **(TEXT | {"fontsize": 20}))
     if arrow is not None:
-        _label_arrow(axes, camera.on_picture(arrow))
-    triad(axes, camera.axes)
+        _label_arrow(axes, seen.on_picture(arrow))
+    triad(axes, seen.axes)
     return deliver(figure, file)
 
 

@@ -16,6 +16,7 @@ from magshell.problem.reading import Source, parse
 from magshell.units import FLUX_DENSITY, quoted, shortened
 from magshell.units import parse as quantity
 
+_WHOLE = ("flux_density", "vector")
 _PART = re.compile(r"\.?([^.\[\]]+)|\[(\d{1,6})\]")
 
 
@@ -75,11 +76,22 @@ def put(data: dict[str, Any], key: str, value: Value) -> None:
         No such entry of a list, or a magnitude for a vector without a direction.
     """
     holder, leaf = _place(data, key)
+    if isinstance(holder, dict):
+        leaf = _as_given(holder, leaf, value)
     present = holder[leaf] if isinstance(holder, list) else holder.get(leaf)
     if leaf in vectors() and isinstance(present, list) and not isinstance(value.data, list | dict | bool):
         holder[leaf] = _scaled(present, value)
     else:
         holder[leaf] = copy.deepcopy(value.data)
+
+
+def _as_given(table: Mapping[str, Any], key: str, value: Value) -> str:
+    """The key under which a table has a magnitude: its own, or that of the whole vector."""
+    if key == "magnitude" and key not in table:
+        return next((whole for whole in _WHOLE if isinstance(table.get(whole), list)), key)
+    if key in _WHOLE and key not in table and "magnitude" in table and not isinstance(value.data, list):
+        return "magnitude"
+    return key
 
 
 def vectors() -> set[str]:
@@ -167,7 +179,8 @@ def _leave_out_stops_beyond_the_end(field: Any) -> None:
     """What cannot be read stays, for the check to say."""
     try:
         stops = [(stop, quantity(stop, FLUX_DENSITY)) for stop in field["stops"]]
-        end = math.hypot(*(quantity(component, FLUX_DENSITY) for component in field["flux_density"]))
+        vector = field["flux_density"] if "flux_density" in field else [field["magnitude"]]
+        end = math.hypot(*(quantity(component, FLUX_DENSITY) for component in vector))
         end *= max(abs(float(number)) for number in field.get("history", [1.0]))
     except (InputError, KeyError, TypeError, ValueError, AttributeError):
         return

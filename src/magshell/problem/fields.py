@@ -18,9 +18,11 @@ from magshell import units
 from magshell.errors import InputError, suggest
 from magshell.magnetics import COUPLINGS
 from magshell.materials import Multiple
+from magshell.mesh.files.names import named
 from magshell.model.parts import MOST_LEVELS
 from magshell.model.region import OFFSETS
 from magshell.model.supports import DIMENSION_OF_FIELD
+from magshell.nearest import nearest
 from magshell.shell.elements import ELEMENTS
 
 # Beyond these no shell exists; within them no product of two magnitudes overflows or vanishes.
@@ -99,7 +101,11 @@ def _text_like(pattern: re.Pattern[str], rule: str) -> Callable[[object], str]:
         if not isinstance(value, str):
             raise InputError(f"{units.quoted(value)} is not a name; write it in quotes")
         if not pattern.fullmatch(value):
-            raise InputError(f"{units.quoted(value)} is not a name: {rule}")
+            here = named(({value: ()}, {}, {}))[0][0, value] if pattern is _NAME else ""
+            renamed = (
+                f"; a group that a mesh file calls so is {units.quoted(here)} here" if value.strip() and here else ""
+            )
+            raise InputError(f"{units.quoted(value)} is not a name: {rule}{renamed}")
         return value
 
     return read
@@ -156,6 +162,22 @@ def _levels(value: object) -> object:
     if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= MOST_LEVELS:
         raise InputError(f"{units.quoted(value)} is not a whole number from 1 to {MOST_LEVELS}")
     return value
+
+
+def _coordinate(value: object) -> float | tuple[float, float]:
+    if not isinstance(value, list | tuple):
+        return _read(value, units.LENGTH)
+    if len(value) != 2:
+        raise InputError(f"has {len(value)} entries; expected one coordinate, or the least and the greatest")
+    return _read(value[0], units.LENGTH), _read(value[1], units.LENGTH)
+
+
+def _radius(value: object) -> float | tuple[float, float]:
+    if not isinstance(value, list | tuple):
+        return _read_positive(value, units.LENGTH)
+    if len(value) != 2:
+        raise InputError(f"has {len(value)} entries; expected the largest distance, or the least and the largest")
+    return _not_negative(_read(value[0], units.LENGTH)), _read_positive(value[1], units.LENGTH)
 
 
 def _outline(value: object) -> object:
@@ -228,6 +250,8 @@ AngleRange = Annotated[tuple[Degrees, Degrees], _list_of(2, "first and last angl
 LengthRange = Annotated[tuple[Length, Length], _list_of(2, "least and greatest coordinate")]
 LengthPair = Annotated[tuple[PositiveLength, PositiveLength], _list_of(2, "lengths")]
 NamePair = Annotated[tuple[Name, Name], _list_of(2, "names of points")]
+Coordinate = Annotated[float | tuple[float, float], BeforeValidator(_coordinate)]
+Radius = Annotated[float | tuple[float, float], BeforeValidator(_radius)]
 Position = Annotated[tuple[Length, Length, Length], _list_of(3, "coordinates X1, X2, X3")]
 FluxVector = Annotated[
     tuple[FluxDensity, FluxDensity, FluxDensity],
@@ -272,7 +296,9 @@ def one_of(names: Collection[str]) -> BeforeValidator:
     def read(value: object) -> object:
         if value not in names:
             *others, last = (f"'{name}'" for name in names)
-            raise InputError(f"{units.quoted(value)} is not one of {', '.join(others)} or {last}")
+            near = nearest(value, names) if isinstance(value, str) else None
+            hint = f"; did you mean '{near}'?" if near else ""
+            raise InputError(f"{units.quoted(value)} is not one of {', '.join(others)} or {last}{hint}")
         return value
 
     return BeforeValidator(read)

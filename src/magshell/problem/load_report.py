@@ -1,83 +1,11 @@
-"""Mechanical loads in words: what each is and adds up to, how strong they are together, and doubts."""
+"""Mechanical loads in words: what each is and adds up to, and how strong they are together."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
-import numpy as np
-
-from magshell.model.loads.load import Size
+from magshell.model.doubts.loads import Strength
 from magshell.problem.building import Problem
-
-
-@dataclass(frozen=True)
-class Strength:
-    """Sums of the loads' largest magnitudes, each over the path, against the stiffness of the shell.
-
-    Attributes
-    ----------
-    force : float
-        Forces and tractions, N.
-    moment : float
-        N m.
-    weight : float
-        N.
-    pressure : float
-        Pa.
-    extent, thickness, youngs_modulus : float
-        L, h (m) and E (Pa).
-    """
-
-    force: float
-    moment: float
-    weight: float
-    pressure: float
-    extent: float
-    thickness: float
-    youngs_modulus: float
-
-    @property
-    def bending(self) -> float:
-        """12 (F L + M) / (E h³): a square plate bends visibly from about 0.1."""
-        return self._bending(self.force + self.moment / self.extent)
-
-    @property
-    def weight_bending(self) -> float:
-        """12 W L / (E h³), for a square plate 12 rho g L³ / (E h²): its visible bending as above."""
-        return self._bending(self.weight)
-
-    @property
-    def stretching(self) -> float:
-        """p L / (E h): a balloon of diameter L is strained by a quarter of it, times 1 - nu."""
-        return self.pressure * self.extent / (self.youngs_modulus * self.thickness)
-
-    @property
-    def overall(self) -> float:
-        """12 (F L + M + W L + p L³) / (E h³)."""
-        return self.bending + self.weight_bending + self._bending(self.pressure * self.extent**2)
-
-    def _bending(self, force: float) -> float:
-        return 12.0 * force * self.extent / (self.youngs_modulus * self.thickness**3)
-
-
-def strength(problem: Problem, extent: float, thickness: float, youngs_modulus: float) -> Strength:
-    """The loads of a problem, in numbers, against a thickness and a modulus."""
-    model = problem.model
-    peaks = [max(map(abs, load.history or (1.0,))) for load in model.loads]
-    sizes = [load.size(forces) for load, forces in zip(model.loads, model.forces_at_rest, strict=True)]
-    force, moment, weight, pressure = (
-        sum(peak * size[column] for peak, size in zip(peaks, sizes, strict=True)) for column in range(len(Size._fields))
-    )
-    return Strength(
-        force=force,
-        moment=moment,
-        weight=weight,
-        pressure=pressure,
-        extent=extent,
-        thickness=thickness,
-        youngs_modulus=youngs_modulus,
-    )
 
 
 def lines(problem: Problem, strong: Strength) -> Iterator[tuple[str, str]]:
@@ -94,25 +22,3 @@ def lines(problem: Problem, strong: Strength) -> Iterator[tuple[str, str]]:
         yield "12 W L / (E h³)", f"{strong.weight_bending:.4g} with the weight W"
     if strong.pressure:
         yield "p L / (E h)", f"{strong.stretching:.4g}"
-
-
-def doubts(problem: Problem, strong: Strength) -> Iterator[str]:
-    """Magnitudes that no experiment has, most often a slip of units."""
-    densities = [layer.density for part in problem.model.shell.parts for layer in part.layers]
-    known = sorted({density for density in densities if density is not None})
-    for density in known:
-        if not 10.0 <= density <= 25e3:
-            what = "lighter than a foam" if density < 10.0 else "heavier than any metal"
-            yield f"the density is {density:.3g} kg/m^3: {what}; check shell.density"
-    if known and not strong.weight:
-        yield "there is a density but no gravity: it is used for the mass alone"
-    beyond = "beyond any experiment; check the units"
-    if strong.bending > 1e5:
-        yield f"12 (F L + M) / (E h³) is {strong.bending:.2g}: loads {beyond}"
-    if strong.weight_bending > 1e5:
-        yield f"12 W L / (E h³) is {strong.weight_bending:.2g}: a weight {beyond}"
-    if strong.stretching > 1e3:
-        yield f"p L / (E h) is {strong.stretching:.2g}: a pressure {beyond}"
-    moved = np.any(problem.model.constraints.values)
-    if problem.file.loads and not any(problem.file.field.flux_density) and not moved and strong.overall < 1e-3:
-        yield f"12 (F L + M + W L + p L³) / (E h³) is {strong.overall:.2g}: the shell will hardly move; check the units"

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import os
 import pathlib
+import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 
 from magshell.errors import InputError, suggest
+from magshell.nearest import nearest
 from magshell.problem import examples
+from magshell.problem.unknown import meant, not_a_table, unknown_key
 from magshell.units import quoted, shortened
 
 if TYPE_CHECKING:
@@ -61,7 +64,7 @@ def parse(text: str, name: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{name}: not valid TOML: {_explained(str(error))}") from None
+        raise InputError(f"{name}: not valid TOML: {_explained(str(error), text)}") from None
     except RecursionError:
         raise InputError(f"{name}: not valid TOML: lists or tables are nested too deeply") from None
     except ValueError as error:  # integers of thousands of digits
@@ -129,11 +132,23 @@ def _not_found(path: pathlib.Path) -> str:
     return f"{path}: there is no such file or built-in problem. {suggest(path.name, [*here, *examples.names()])}"
 
 
-def _explained(error: str) -> str:
+def _explained(error: str, text: str) -> str:
     for marker in ("Cannot overwrite a value", "Cannot declare", "Cannot mutate"):
         if error.startswith(marker):
             return f"a key or table is written twice: {error}"
-    return error
+    place = re.search(r"at line ([0-9]+)", error)
+    return error + (_unquoted(text.splitlines()[int(place[1]) - 1]) if place else "")
+
+
+def _unquoted(line: str) -> str:
+    """A remedy, as an addition, for a line with a quantity or a name without quotes; empty for others."""
+    found = re.fullmatch(r"\s*([\w.\"'-]+)\s*=\s*([\w.+-][^\"'#\[\]{}=]*?)\s*(#.*)?", line)
+    if found is None:
+        bare = re.sub(r"\"[^\"]*\"|'[^']*'|#.*", "", line)
+        listed = "[" in bare and re.search(r"[0-9]\s*[A-Za-z\u00b5\u03bc\u00b0]", bare.partition("=")[2])
+        return '. Quantities with a unit are in quotes, also in a list: [0, "2 mT"]' if listed else ""
+    value = re.sub(r"(?<=[0-9]),(?=[0-9])", ".", found[2])
+    return f'. Quantities with a unit, and names, are in quotes: {shortened(found[1])} = "{shortened(value)}"'
 
 
 def _lines(error: ValidationError, name: str) -> list[str]:
@@ -160,21 +175,25 @@ def _located(details: Mapping[str, Any]) -> tuple[str, str]:
         case "key_error":
             where.append(context["key"])
             message = context["message"]
+        case "unknown_key":
+            where.append(context["key"])
+            message = unknown_key(context["key"], context["known"], at_the_top=len(where) == 1)
         case "value_error":
             message = str(context["error"])
         case "missing":
             message = "is missing"
         case "union_tag_not_found":
             where.append(choice)
-            message = f"is missing. {suggest('', _kinds(place))}"
+            message = f"is missing{_in_its_place(choice, details['input'])}. {suggest('', _kinds(place))}"
         case "union_tag_invalid":
             where.append(choice)
             tag = str(context["tag"])
             message = f"{quoted(tag)} is not known. {suggest(tag, _kinds(place))}"
         case "literal_error":
-            message = f"{quoted(details['input'])} is not one of {context['expected']}"
+            written, expected = details["input"], context["expected"]
+            message = f"{quoted(written)} is not one of {expected}{meant(written, expected)}"
         case "model_attributes_type" | "dict_type":
-            message = "is not a table of keys and values"
+            message = not_a_table(_pattern(where), details["input"])
         case "tuple_type" | "list_type":
             message = (
                 f"is not a list: write [[{_pattern(where).replace('[]', '')}]]"
@@ -188,6 +207,12 @@ def _located(details: Mapping[str, Any]) -> tuple[str, str]:
         case _:
             message = str(details["msg"])
     return _written(where), message
+
+
+def _in_its_place(key: str, table: object) -> str:
+    """Which key of a table stands for one that is missing, as an addition; empty: none does."""
+    found = [f"'{shortened(one)}'" for one in table if nearest(one, [key])] if isinstance(table, dict) else []
+    return f"; there is {' and '.join(found)} in its place" if found else ""
 
 
 def _without_choices(found: Sequence[str | int]) -> tuple[list[str | int], str, str]:

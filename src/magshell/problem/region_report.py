@@ -1,8 +1,8 @@
-"""Regions and layers in words: what each is made of, its mass, and doubts."""
+"""Regions and layers in words: what each is made of, its mass, and remanence that it does not take."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -14,12 +14,8 @@ from magshell.model.region import Layer
 from magshell.model.words import name_of, offset_of, thickness_of
 from magshell.problem import remanence_report
 from magshell.problem.building import Problem
-from magshell.shell.shear_profile import Moduli, stiffness
 from magshell.units import DENSITY, FLUX_DENSITY, LENGTH, MASS, STRESS, show
 from magshell.wording import counted
-
-SHORT = 0.1
-"""Part of the extent of the shell over which layers may bend apart unnoticed."""
 
 
 def has_several(problem: Problem) -> bool:
@@ -106,39 +102,3 @@ def doubts(problem: Problem) -> Iterator[str]:
                 )
         if entry.group is None and not of_shell.size:
             yield f"remanence[{number}]: no element has it: all regions have their own remanence or layers"
-    yield from _outside(shell.parts)
-    yield from _layers_that_bend_apart(problem)
-
-
-def _outside(parts: Sequence[Part]) -> Iterator[str]:
-    """A mesh that lies beyond a face, so that nothing of the shell is where it is drawn, supported and loaded."""
-    for part in parts:
-        beyond = np.abs(part.offset_at_nodes) - 0.5 * part.at_nodes.sum(axis=2)
-        if beyond.max() > 1e-9 * part.at_nodes.max():
-            yield (
-                f"'{name_of(part)}': the mesh lies outside its faces, {show(float(beyond.max()), LENGTH)} from the "
-                "nearer one; check offset"
-            )
-
-
-def _layers_that_bend_apart(problem: Problem) -> Iterator[str]:
-    """Stacks that one director does not describe: stiff layers that a soft one hardly ties to each other.
-
-    Beside a clamp or a load each layer bends about its own middle, over the length √(D' (1 - D'/D)/K) with the bending
-    stiffness D of the stack, D' = Σ E' h³/12 of its layers alone, and its shear stiffness K.
-    """
-    mesh = problem.model.shell.mesh
-    extent = float(np.ptp(mesh.points, axis=0).max())
-    for part in problem.model.shell.parts:
-        if len(part.layers) < 2:
-            continue
-        moduli = [Moduli.of(layer.material) for layer in part.layers]
-        whole = stiffness(part.at_nodes, moduli)
-        alone = part.at_nodes**3 @ np.array([one.plane for one in moduli]) / 12.0
-        length = float(np.sqrt(alone * (1.0 - alone / whole.bending) / whole.shear).max())
-        if length > SHORT * extent:
-            yield (
-                f"layers of '{name_of(part)}': within {show(length, LENGTH)} of clamps, loads and borders the stiff "
-                "ones bend apart, since the soft ones hardly tie them; the model, in which all share a director, is "
-                "too stiff there"
-            )

@@ -13,7 +13,9 @@ from magshell.evaluation.outputs import chosen
 from magshell.materials import own_keys
 from magshell.mesh.files import FileMesh
 from magshell.mesh.quality import worst
-from magshell.model import coupling_limit, symmetry
+from magshell.model import symmetry
+from magshell.model.doubts.figures import Figures, Whole, figures_of
+from magshell.model.doubts.loads import strength
 from magshell.model.springs import Spring
 from magshell.model.supports import Support, SymmetryPlane
 from magshell.model.words import offset_of, span
@@ -25,13 +27,10 @@ from magshell.problem import (
     remanence_report,
     schema,
     symmetry_report,
-    triangle_report,
 )
 from magshell.problem.building import Problem
 from magshell.problem.building.material import by_default
 from magshell.problem.fields import dimension_of
-from magshell.problem.figures import Figures, Whole, figures_of
-from magshell.problem.load_report import Strength
 from magshell.shell.unknowns import width
 from magshell.units import DENSITY, FLUX_DENSITY, LENGTH, MASS, NUMBER, STRESS, show
 from magshell.wording import counted, quantity
@@ -58,9 +57,8 @@ class Report:
 
 def describe(problem: Problem) -> Report:
     """Describe a problem that has passed all checks."""
-    figures = figures_of(problem)
-    soft = figures.most_flexible
-    strong = load_report.strength(problem, figures.extent, soft.thinnest, soft.youngs_modulus)
+    figures = figures_of(problem.model)
+    strong = strength(problem.model, figures)
     several = region_report.has_several(problem)
     return Report(
         sections={
@@ -78,7 +76,7 @@ def describe(problem: Problem) -> Report:
             "Probes": list(_probes(problem, figures.extent)),
             **({"Results": list(_results(problem))} if problem.file.results.model_fields_set else {}),
         },
-        warnings=list(_doubts(problem, figures, strong)),
+        warnings=list(_doubts(problem, figures)),
         notes=[note] if (note := by_default(problem.file)) is not None else [],
     )
 
@@ -190,7 +188,7 @@ def _field(problem: Problem, figures: Whole) -> Iterator[tuple[str, str]]:
     if figures.field == 0.0:
         yield "flux density B", "none"
         return
-    yield "flux density B", quantity(table.flux_density, FLUX_DENSITY)
+    yield "flux density B", quantity(table.vector, FLUX_DENSITY)
     yield "|B|", show(figures.field, FLUX_DENSITY)
     yield "coupling law", table.coupling
     if table.stops:
@@ -256,41 +254,12 @@ def _coordinate(value: float, extent: float) -> str:
     return show(value if abs(value) > 1e-9 * extent else 0.0, LENGTH)
 
 
-def _doubts(problem: Problem, figures: Whole, strong: Strength) -> Iterator[str]:
-    """Magnitudes that no experiment has, most often a slip of units."""
-    for part in figures.parts:
-        where = "" if len(figures.parts) == 1 else f"region '{part.name}': "
-        yield from (where + doubt for doubt in _doubts_of(part))
-    if figures.field > 5.0:
-        field = show(figures.field, FLUX_DENSITY)
-        yield f"the field is {field}: beyond most laboratories; check field.flux_density"
-    strongest = max(float(np.linalg.norm(part.remanence, axis=-1).max()) for part in problem.model.shell.parts)
-    if strongest > 1.5:
-        yield f"the remanence is {show(strongest, FLUX_DENSITY)}: more than any magnet keeps"
-    if figures.field and not figures.strongest and problem.model.shell.magnetised:
-        yield "the remanence of the layers has no mean: the undeformed shape feels no couple"
-    elif figures.field and not figures.strongest:
-        yield "there is a field but no remanence: the field does nothing"
-    elif figures.field and figures.couple < 1e-9 * figures.field * figures.strongest:
-        yield "the field is parallel to the remanence everywhere: the undeformed shape feels no couple"
-    elif figures.field and figures.bending_load < 1e-3:
-        yield f"the bending load is {figures.bending_load:.2g}: the shell will hardly move; check the units"
-    elif figures.bending_load > 1e5:
-        yield f"the bending load is {figures.bending_load:.2g}: far beyond any experiment; check the units"
+def _doubts(problem: Problem, figures: Whole) -> Iterator[str]:
+    """What smells of a slip in the model, and what only its file shows."""
+    yield from problem.model.doubts()
     yield from _other_thickness(problem, figures)
     yield from region_report.doubts(problem)
-    yield from coupling_limit.reached(problem.model.shell, problem.model.coupling, problem.model.largest_field)
-    yield from remanence_report.doubts(problem)
-    yield from load_report.doubts(problem, strong)
     yield from symmetry_report.doubts(problem)
-    if problem.model.constraints.fixed[:, :3].all():
-        yield "the supports hold every node: the displacement is given everywhere, nothing is left to move"
-    yield from triangle_report.doubts(problem.model.shell.mesh, figures.thickest, figures.radius)
-    worst_corner = worst(problem.model.shell.mesh)["scaled_jacobian"]
-    if worst_corner.value < 0.2:
-        yield f"element {worst_corner.element} is badly shaped (scaled Jacobian {worst_corner.value:.2g})"
-    if not problem.file.probes:
-        yield "there are no probes: the history will hold the load only"
 
 
 def _other_thickness(problem: Problem, figures: Whole) -> Iterator[str]:
@@ -304,20 +273,3 @@ def _other_thickness(problem: Problem, figures: Whole) -> Iterator[str]:
             f"the solid in {mesh.origin.file} is {show(solid, LENGTH)} thick, the shell "
             f"{show(figures.thinnest, LENGTH)}: check shell.thickness"
         )
-
-
-def _doubts_of(part: Figures) -> Iterator[str]:
-    """Those of one part."""
-    if part.extent < 5.0 * part.thickest:
-        yield f"L/h is {part.extent / part.thickest:.3g}: too thick for a shell; check shell.thickness and the mesh"
-    if part.slenderness > 1e4:
-        yield f"L/h is {part.slenderness:.3g}: thinner than any film; check shell.thickness and the mesh"
-    if part.radius < 2.0 * part.thickest:
-        yield f"R/h is {part.radius / part.thickest:.3g}: curved too tightly for its thickness"
-    for modulus in sorted({part.softest, part.stiffest}):
-        if modulus < 1e3:
-            yield f"the shear modulus is {show(modulus, STRESS)}: softer than a gel; check material.shear_modulus"
-        if modulus > 1e10:
-            yield f"the shear modulus is {show(modulus, STRESS)}: stiffer than magnesium; check material.shear_modulus"
-    if part.poissons_ratio > 0.4999 + 1e-9:
-        yield f"Poisson's ratio is {part.poissons_ratio:.6g}: nearly incompressible, slow to converge"

@@ -8,7 +8,7 @@ from types import TracebackType
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
-from magshell.progress import KernelMessages
+from magshell.kernel_messages import KernelMessages
 
 
 class Display:
@@ -35,7 +35,7 @@ class Display:
         )
         names = list(names)
         width = max(map(len, names))
-        self._messages = KernelMessages(self.say)
+        self._messages = KernelMessages(self.say, solves=True)
         self._tasks = {name: self._bars.add_task(name.ljust(width), total=1.0, start=False) for name in names}
 
     def __enter__(self) -> Display:

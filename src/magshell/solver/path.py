@@ -8,6 +8,7 @@ from os import PathLike
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from magshell.arrays import AnyArray, FloatArray
 from magshell.drawing import drawing
@@ -17,6 +18,7 @@ from magshell.evaluation.balance import largest_imbalances
 from magshell.evaluation.converged import converged
 from magshell.evaluation.maxima import described
 from magshell.evaluation.outputs import find
+from magshell.linalg import nested_dissection
 from magshell.model.course import Course, Loading
 from magshell.model.model import Model
 from magshell.solver.critical import CriticalPoint
@@ -90,6 +92,14 @@ class Path:
     cuts: int = 0
     cpu_seconds: float = 0.0
     trail: list[Waypoint] = field(default_factory=list)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What a pickle or a copy has: all but the equations, whose laws have addresses in this process only."""
+        left_out = ("discretisation", "history")
+        return {name: value for name, value in self.__dict__.items() if name not in left_out}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state, discretisation=Discretisation(state["model"], nested_dissection))
 
     def __repr__(self) -> str:
         return f"Path({max(len(self.steps) - 1, 0)} steps, {self.discretisation.dofs} unknowns: {self.reason})"
@@ -261,7 +271,14 @@ class Path:
         """
         drawing("write_page")(self, file, color=color)
 
-    def animate(self, file: str | PathLike[str], color: str = "u3") -> None:
+    def animate(
+        self,
+        file: str | PathLike[str],
+        color: str = "u3",
+        seconds: float = 4.0,
+        camera: ArrayLike | None = None,
+        smooth: bool = False,
+    ) -> None:
         """Write the path as an animation, a converged step for each frame.
 
         Parameters
@@ -270,12 +287,41 @@ class Path:
             `.gif`, or `.mp4` with the extra `magshell[video]`.
         color : str
             Output that colours the shape.
+        seconds : float
+            From the first to the last step, s.
+        camera : (3,) array_like, optional
+            Direction from the body to the camera, such as (0, -1, 0) for a view along X2; by default the best of a few.
+        smooth : bool
+            Whether frames between the steps are drawn too, linearly interpolated.
         """
-        drawing("animate")(self, file, color)
+        drawing("animate")(self, file, color, seconds=seconds, camera=camera, smooth=smooth)
 
-    def plot(self, color: str = "u3") -> Any:
-        """Picture of the last deformed shape, coloured by a registered output."""
-        return drawing("draw_shape")(self, file=None, color=color)
+    def plot(
+        self,
+        color: str = "u3",
+        step: int = -1,
+        camera: ArrayLike | None = None,
+        file: str | PathLike[str] | None = None,
+    ) -> Any:
+        """Picture of a deformed shape.
+
+        Parameters
+        ----------
+        color : str
+            Output that colours the shape.
+        step : int
+            Which converged step; negative counts from the last.
+        camera : (3,) array_like, optional
+            Direction from the body to the camera, such as (0, -1, 0) for a view along X2; by default the best of a few.
+        file : path, optional
+            PNG file to write.
+
+        Returns
+        -------
+        PIL.Image.Image or None
+            The picture, if no file was named.
+        """
+        return drawing("draw_shape")(self, file=file, step=step, color=color, camera=camera)
 
 
 class SolveError(RuntimeError):

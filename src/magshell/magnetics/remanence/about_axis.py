@@ -12,11 +12,13 @@ from magshell.arrays import FloatArray
 from magshell.keys import Key
 from magshell.magnetics.remanence.vectors import Remanence, direction, flipped_towards, scaled, vector
 from magshell.magnetics.remanence.way import MAGNITUDE, TOWARDS, Way
+from magshell.remembered import remembered
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh
 
 
+@remembered
 def meridional(magnitude: float, axis: ArrayLike = (0.0, 0.0, 1.0), mirrored: bool = True) -> Remanence:
     """Along the meridians of a sphere about the origin, pointing away from the pole on the +axis side.
 
@@ -41,6 +43,7 @@ def meridional(magnitude: float, axis: ArrayLike = (0.0, 0.0, 1.0), mirrored: bo
     return sample
 
 
+@remembered
 def circumferential(magnitude: float, axis: ArrayLike = (0.0, 0.0, 1.0), towards: ArrayLike | None = None) -> Remanence:
     """Along the circles about an axis through the origin, in the sense axis × radius.
 
@@ -63,6 +66,7 @@ def circumferential(magnitude: float, axis: ArrayLike = (0.0, 0.0, 1.0), towards
     return sample
 
 
+@remembered
 def radial(
     magnitude: float,
     axis: ArrayLike = (0.0, 0.0, 1.0),

@@ -9,11 +9,13 @@ from numpy.typing import ArrayLike
 
 from magshell import wording
 from magshell.keys import Key
-from magshell.magnetics.remanence.vectors import Remanence
+from magshell.magnetics.remanence.vectors import Remanence, given_once
 from magshell.magnetics.remanence.vectors import vector as checked
 from magshell.magnetics.remanence.way import Way
+from magshell.remembered import remembered
 
 
+@remembered
 def constant(vector: ArrayLike) -> Remanence:
     """The same vector (3,), T, everywhere."""
     value = checked("vector", vector)
@@ -37,16 +39,7 @@ def _words(vector: Sequence[float] | None, magnitude: float | None, direction: S
 def _fault(
     vector: Sequence[float] | None, magnitude: float | None, direction: Sequence[float] | None
 ) -> tuple[str, str] | None:
-    """It is given once."""
-    polar = (magnitude is not None, direction is not None)
-    if vector is None and polar == (False, False):
-        return "vector", "is missing; give it, or magnitude and direction"
-    if vector is not None and any(polar):
-        return "vector", "is given beside magnitude or direction; give one or the other"
-    if vector is None and not all(polar):
-        present, missing = ("magnitude", "direction") if polar[0] else ("direction", "magnitude")
-        return missing, f"is missing beside {present}"
-    return None
+    return given_once("vector", vector, magnitude, direction)
 
 
 CONSTANT = Way(

@@ -13,6 +13,7 @@ from magshell.errors import InputError, suggest
 from magshell.keys import Key
 from magshell.magnetics.remanence.vectors import Remanence, direction, flipped_towards
 from magshell.magnetics.remanence.way import MAGNITUDE, TOWARDS, Way
+from magshell.remembered import remembered
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh
@@ -21,6 +22,7 @@ SAMPLES = 9
 ITERATIONS = 6
 
 
+@remembered
 def along_curve(group: str, magnitude: float, towards: ArrayLike | None = None) -> Remanence:
     """Along the tangent of a curve of edges, at its point nearest to the material point.
 

@@ -25,6 +25,7 @@ from magshell.errors import InputError
 from magshell.keys import Key
 from magshell.magnetics.remanence.vectors import Remanence, direction, vector
 from magshell.magnetics.remanence.way import Way
+from magshell.remembered import remembered
 from magshell.units import ANGLE, LENGTH, show
 
 if TYPE_CHECKING:
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 PARALLEL = 1e-6
 
 
+@remembered
 def profile(
     magnitudes: ArrayLike,
     positions: ArrayLike,

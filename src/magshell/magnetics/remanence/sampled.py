@@ -13,6 +13,7 @@ from magshell.errors import InputError
 from magshell.magnetics.remanence.tables import duplicate
 from magshell.magnetics.remanence.vectors import Remanence
 from magshell.mesh.geometry import centres
+from magshell.remembered import remembered
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh
@@ -21,6 +22,7 @@ AS_NEAR = 1e-6
 """Distances that differ by less than this part of half an element's diagonal are the same; vectors likewise."""
 
 
+@remembered
 def function(of_position: Callable[[FloatArray], ArrayLike]) -> Remanence:
     """A function of the reference position: takes points (n, 3) in m, returns vectors (n, 3) in T."""
 
@@ -37,6 +39,7 @@ def function(of_position: Callable[[FloatArray], ArrayLike]) -> Remanence:
     return sample
 
 
+@remembered
 def per_element(vectors: ArrayLike) -> Remanence:
     """One vector per element, shape (elements, 3), T."""
     values = np.array(vectors, dtype=float)

@@ -14,6 +14,7 @@ from magshell.keys import Key
 from magshell.magnetics.remanence.inside import find
 from magshell.magnetics.remanence.vectors import Remanence, direction, first_element
 from magshell.magnetics.remanence.way import MAGNITUDE, Way
+from magshell.remembered import remembered
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 NORMAL = 1e-6
 
 
+@remembered
 def tangential(magnitude: float, along: ArrayLike) -> Remanence:
     """In the surface, along the projection of a direction onto its tangent plane.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -38,6 +38,21 @@ def direction(name: str, value: ArrayLike) -> FloatArray:
     if length == 0.0:
         raise InputError(f"remanence: {name} is the zero vector; it must have a direction")
     return np.asarray(components / length)
+
+
+def given_once(
+    key: str, vector: Sequence[float] | None, magnitude: float | None, direction: Sequence[float] | None
+) -> tuple[str, str] | None:
+    """Key and fault, unless a vector is given or else its magnitude and direction are."""
+    polar = (magnitude is not None, direction is not None)
+    if vector is None and polar == (False, False):
+        return key, "is missing; give it, or magnitude and direction"
+    if vector is not None and any(polar):
+        return key, "is given beside magnitude or direction; give one or the other"
+    if vector is None and not all(polar):
+        present, missing = ("magnitude", "direction") if polar[0] else ("direction", "magnitude")
+        return missing, f"is missing beside {present}"
+    return None
 
 
 def scaled(along: FloatArray, magnitude: float, what: str) -> FloatArray:

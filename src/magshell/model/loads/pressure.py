@@ -49,8 +49,8 @@ class Pressure(Load):
 
     Parameters
     ----------
-    group : str
-        A group of elements.
+    group : str or None
+        A group of elements; None: the whole shell.
     pressure : float
         Pa; positive pushes along the director, to the side that the mesh's normal points to.
     history : sequence of float, optional
@@ -59,7 +59,7 @@ class Pressure(Load):
 
     kind: ClassVar[str] = "pressure"
     keys: ClassVar[Mapping[str, Key]] = {
-        "group": Key("Name", "Group of elements that it acts on."),
+        "group": Key("Name", "Group of elements that it acts on.", "the whole shell"),
         "pressure": Key("Pressure", "Per area of the deformed mid-surface; positive pushes along its normal."),
         "history": HISTORY,
     }
@@ -67,7 +67,7 @@ class Pressure(Load):
     letter: ClassVar[str] = "$p$"
     on: ClassVar[Literal["nodes", "elements"]] = "elements"
 
-    group: str
+    group: str | None
     pressure: float
     history: Sequence[float] | None = None
 
@@ -104,7 +104,7 @@ class Pressure(Load):
         points, elements = shell.mesh.points, shell.mesh.elements[self.members(shell)]
         x = points[elements]
         normals = unit(np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1]))
-        name = f"{self.group}: {self.kind}, {self.magnitude}"
+        name = f"{self.group or 'whole shell'}: {self.kind}, {self.magnitude}"
         return Arrows(centres(points, elements), np.sign(self.pressure) * normals, name)
 
 

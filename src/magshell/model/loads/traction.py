@@ -26,8 +26,8 @@ class Traction(Load):
 
     Parameters
     ----------
-    group : str
-        A group of elements.
+    group : str or None
+        A group of elements; None: the whole shell.
     traction : array_like, shape (3,)
         Pa.
     history : sequence of float, optional
@@ -36,7 +36,7 @@ class Traction(Load):
 
     kind: ClassVar[str] = "traction"
     keys: ClassVar[Mapping[str, Key]] = {
-        "group": Key("Name", "Group of elements that it acts on."),
+        "group": Key("Name", "Group of elements that it acts on.", "the whole shell"),
         "traction": Key("StressVector", "Force per area of the undeformed mid-surface."),
         "history": HISTORY,
     }
@@ -44,7 +44,7 @@ class Traction(Load):
     letter: ClassVar[str] = "$t$"
     on: ClassVar[Literal["nodes", "elements"]] = "elements"
 
-    group: str
+    group: str | None
     traction: ArrayLike
     history: Sequence[float] | None = None
 

@@ -119,7 +119,7 @@ def with_earlier_defaults(problem: Problem) -> Problem:
 
 
 def _field(table: schema.FieldTable) -> UniformField:
-    return UniformField(table.flux_density, table.stops, table.history, table.rotation_axis, table.rotation)
+    return UniformField(table.vector, table.stops, table.history, table.rotation_axis, table.rotation)
 
 
 def _stages(tables: tuple[schema.StageTable, ...]) -> list[Stage]:

@@ -15,6 +15,11 @@ from magshell.problem.building.located import at
 from magshell.problem.schema.mesh import Generated
 
 MOST_ELEMENTS = 1_000_000
+_SELECTIONS = {
+    "element_groups": Mesh.select_elements,
+    "edge_groups": Mesh.select_edges,
+    "node_groups": Mesh.select_nodes,
+}
 
 
 def build_mesh(table: schema.Mesh, folder: pathlib.Path) -> Mesh:
@@ -24,15 +29,10 @@ def build_mesh(table: schema.Mesh, folder: pathlib.Path) -> Mesh:
     else:
         with at("mesh"):
             mesh = _generated(table)
-    for name, chosen in table.element_groups.items():
-        with at(f"mesh.element_groups.{name}"):
-            mesh = mesh.select_elements(name, chosen.x1, chosen.x2, chosen.x3, chosen.groups)
-    for name, selection in table.edge_groups.items():
-        with at(f"mesh.edge_groups.{name}"):
-            mesh = mesh.select_edges(name, selection.x1, selection.x2, selection.x3)
-    for name, selection in table.node_groups.items():
-        with at(f"mesh.node_groups.{name}"):
-            mesh = mesh.select_nodes(name, selection.x1, selection.x2, selection.x3)
+    for kind, select in _SELECTIONS.items():
+        for name, chosen in getattr(table, kind).items():
+            with at(f"mesh.{kind}.{name}"):
+                mesh = select(mesh, name, chosen.x1, chosen.x2, chosen.x3, chosen.groups, chosen.shapes)
     return mesh
 
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
+
 from pydantic import model_validator
 
+from magshell.magnetics.remanence.vectors import given_once
 from magshell.problem import fields as f
 from magshell.problem.schema.table import Table, key_error
 
@@ -11,12 +14,31 @@ from magshell.problem.schema.table import Table, key_error
 class FieldTable(Table):
     """The external field."""
 
-    flux_density: f.FluxVector
+    flux_density: f.FluxVector | None = None
+    magnitude: f.PositiveFluxDensity | None = None
+    direction: f.Direction | None = None
     history: f.History | None = None
     rotation_axis: f.Direction | None = None
     rotation: f.Rotation | None = None
     stops: tuple[f.PositiveFluxDensity, ...] = ()
     coupling: f.Coupling = "couple"
+
+    @property
+    def vector(self) -> tuple[float, float, float]:
+        """The flux density at multiplier 1, T, however it is given."""
+        if self.flux_density is not None:
+            return self.flux_density
+        assert self.magnitude is not None
+        assert self.direction is not None
+        x1, x2, x3 = (self.magnitude * component / math.hypot(*self.direction) for component in self.direction)
+        return x1, x2, x3
+
+    @model_validator(mode="after")
+    def _is_given_once(self) -> FieldTable:
+        fault = given_once("flux_density", self.flux_density, self.magnitude, self.direction)
+        if fault is not None:
+            raise key_error(*fault)
+        return self
 
     @model_validator(mode="after")
     def _axis_and_angles_go_together(self) -> FieldTable:
@@ -28,7 +50,7 @@ class FieldTable(Table):
 
     @model_validator(mode="after")
     def _stops_lie_on_the_way(self) -> FieldTable:
-        end = sum(component**2 for component in self.flux_density) ** 0.5 * max(map(abs, self.history or (1.0,)))
+        end = math.hypot(*self.vector) * max(map(abs, self.history or (1.0,)))
         for number, stop in enumerate(self.stops):
             if stop > end * (1.0 + 1e-12):
                 raise key_error(f"stops[{number}]", f"{stop:g} T lies beyond the largest field of the path, {end:g} T")

@@ -7,37 +7,68 @@ from typing import Annotated, Any, Literal, TypeAlias, get_args
 from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag, model_validator
 
 from magshell.errors import InputError, suggest
+from magshell.mesh import in_cylinder, in_polygon, in_sphere
+from magshell.mesh.shapes import Shape
 from magshell.problem import fields as f
 from magshell.problem.schema.table import Table, key_error
 
 
-class Selection(Table):
-    """Everything on the boundary (edges) or in the mesh (nodes) that has these coordinates."""
+class Sphere(Table):
+    """Inside of a sphere, or between two."""
 
-    x1: f.Length | None = None
-    x2: f.Length | None = None
-    x3: f.Length | None = None
+    centre: f.Position = (0.0, 0.0, 0.0)
+    radius: f.Radius
+
+
+class Round(Table):
+    """Inside of an endless cylinder, or between two."""
+
+    through: f.Position = (0.0, 0.0, 0.0)
+    axis: f.Direction = (0.0, 0.0, 1.0)
+    radius: f.Radius
+
+
+class _Selected(Table):
+    """What lies in shapes and belongs to groups."""
+
+    sphere: Sphere | None = None
+    cylinder: Round | None = None
+    polygon: f.Outline | None = None
+    groups: f.Names | None = None
 
     @model_validator(mode="after")
-    def _selects_something(self) -> Selection:
-        if self.x1 is None and self.x2 is None and self.x3 is None:
-            raise InputError("selects nothing; give at least one of x1, x2, x3")
+    def _selects_something(self) -> _Selected:
+        if all(value is None for _, value in self):
+            raise InputError(f"selects nothing; give at least one of {', '.join(sorted(type(self).model_fields))}")
         return self
 
+    @property
+    def shapes(self) -> list[Shape] | None:
+        """Those that are given."""
+        found = []
+        if self.sphere is not None:
+            found.append(in_sphere(self.sphere.centre, self.sphere.radius))
+        if self.cylinder is not None:
+            found.append(in_cylinder(self.cylinder.through, self.cylinder.axis, self.cylinder.radius))
+        if self.polygon is not None:
+            found.append(in_polygon(self.polygon))
+        return found or None
 
-class Elements(Table):
-    """The elements between these coordinates, of some groups or of all."""
+
+class Selection(_Selected):
+    """The edges on the boundary, or the nodes, that lie there; of some groups or of all."""
+
+    x1: f.Coordinate | None = None
+    x2: f.Coordinate | None = None
+    x3: f.Coordinate | None = None
+
+
+class Elements(_Selected):
+    """The elements that lie there, of some groups or of all."""
 
     x1: f.LengthRange | None = None
     x2: f.LengthRange | None = None
     x3: f.LengthRange | None = None
-    groups: f.Names | None = None
-
-    @model_validator(mode="after")
-    def _selects_something(self) -> Elements:
-        if self.x1 is None and self.x2 is None and self.x3 is None and self.groups is None:
-            raise InputError("selects nothing; give at least one of x1, x2, x3, groups")
-        return self
 
 
 class _Groups(Table):

@@ -7,8 +7,6 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, model_validator
 from pydantic_core import PydanticCustomError
 
-from magshell.errors import InputError, suggest
-
 
 def key_error(key: str, message: str) -> PydanticCustomError:
     """An error of a table that belongs to one of its keys."""
@@ -24,8 +22,8 @@ class Table(BaseModel):
     @classmethod
     def _only_known_keys(cls, data: Any) -> Any:
         if not isinstance(data, dict):
-            raise InputError("is not a table of keys and values")
+            raise PydanticCustomError("dict_type", "is not a table of keys and values")
         for key in data:
             if key not in cls.model_fields:
-                raise key_error(key, f"is an unknown key. {suggest(key, cls.model_fields)}")
+                raise PydanticCustomError("unknown_key", "{key}", {"key": key, "known": list(cls.model_fields)})
         return data

@@ -1,4 +1,4 @@
-"""Magnitudes of a problem: what `magshell check` says and doubts."""
+"""Magnitudes of a model: what `magshell check` says and doubts."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.mesh.geometry import centres, unit
-from magshell.problem.building import Problem
+from magshell.model.doubts.asked import Asked
 
 VACUUM_PERMEABILITY = 4e-7 * math.pi
 
@@ -91,9 +91,9 @@ class Whole:
         return min(self.parts, key=lambda part: part.bending_stiffness)
 
 
-def figures_of(problem: Problem) -> Whole:
-    """Of a problem that has passed all checks."""
-    shell, flux = problem.model.shell, np.array(problem.file.field.flux_density)
+def figures_of(model: Asked) -> Whole:
+    """Of a model that has passed all checks."""
+    shell, flux = model.shell, model.field.vector
     mesh = shell.mesh
     vectors = shell.overall_remanence(mesh, centres(mesh.points, mesh.elements)[:, None])[:, 0]
     extent, field = float(np.ptp(mesh.points, axis=0).max()), float(np.linalg.norm(flux))

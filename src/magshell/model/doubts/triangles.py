@@ -1,4 +1,4 @@
-"""What `magshell check` says of triangles: where they are too long, they lock in membrane strains."""
+"""Triangles that are too long: they lock in membrane strains."""
 
 from __future__ import annotations
 

@@ -1,0 +1,25 @@
+"""What is asked of a model to find what smells of a slip in it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+from magshell.arrays import FloatArray
+from magshell.model.supports import Constraints
+from magshell.model.symmetry import Mirrored
+
+
+class Asked(Mirrored, Protocol):
+    """A model."""
+
+    @property
+    def coupling(self) -> Any: ...
+    @property
+    def constraints(self) -> Constraints: ...
+    @property
+    def largest_field(self) -> float: ...
+    @property
+    def forces_at_rest(self) -> tuple[FloatArray, ...]: ...
+    @property
+    def probe_nodes(self) -> Mapping[str, int]: ...
