@@ -15,7 +15,7 @@ from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.drawing import drawing
 from magshell.errors import InputError, NothingLoads, suggest
 from magshell.magnetics.deformation_gradient_energy import DeformationGradientEnergy
-from magshell.magnetics.field import UniformField
+from magshell.magnetics.fields.uniform import UniformField
 from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.model import coupling_limit, symmetry
 from magshell.model.course import Amounts, Course, Loading

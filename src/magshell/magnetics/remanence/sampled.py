@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.errors import InputError
-from magshell.magnetics.remanence.tables import duplicate
+from magshell.tables import duplicate
 from magshell.magnetics.remanence.vectors import Remanence
 from magshell.mesh.geometry import centres
 
