@@ -1,0 +1,177 @@
+"""The field of magnets and coils that move as one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from magshell.arrays import FloatArray, IntArray
+from magshell.errors import InputError
+from magshell.magnetics.fields.field import Values
+from magshell.magnetics.fields.lattice import Lattice
+from magshell.magnetics.fields.magpy import is_of_magpylib, shapes_of
+from magshell.magnetics.fields.motion import Motion, MovingField, rotation, turned, vector
+from magshell.magnetics.fields.shapes import Shape
+
+OUTSIDE = -1
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """A magnet or coil in its place before the first stage.
+
+    Parameters
+    ----------
+    shape : Shape
+    position : array_like, shape (3,)
+        Of its middle, m.
+    rotation_vector : array_like, shape (3,)
+        From the global axes to its own: the direction is the axis, the length the angle, rad.
+
+    Attributes
+    ----------
+    turn : ndarray, shape (3, 3)
+        Its axes in its columns.
+    """
+
+    shape: Shape
+    position: ArrayLike = (0.0, 0.0, 0.0)
+    rotation_vector: ArrayLike = (0.0, 0.0, 0.0)
+    turn: FloatArray = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        where = self.shape.kind
+        object.__setattr__(self, "position", vector(self.position, f"{where}: position"))
+        turn = vector(self.rotation_vector, f"{where}: rotation_vector")
+        object.__setattr__(self, "rotation_vector", turn)
+        angle = float(np.linalg.norm(turn))
+        object.__setattr__(self, "turn", rotation(turn / angle, angle) if angle else np.eye(3))
+
+    @property
+    def place(self) -> FloatArray:
+        """Its position as an array (3,)."""
+        return np.asarray(self.position)
+
+    def local(self, points: FloatArray) -> FloatArray:
+        """Points (n, 3) in its own axes."""
+        return (points - self.place) @ self.turn
+
+    def values(self, points: FloatArray, second: bool) -> Values:
+        """Its field at points (n, 3)."""
+        still = not np.any(np.asarray(self.rotation_vector))
+        return turned(self.shape.values(self.local(points), second), None if still else self.turn)
+
+    def moved(self, turn: FloatArray, shift: FloatArray) -> Source:
+        """Turned by a matrix (3, 3) about the origin and then shifted."""
+        from scipy.spatial.transform import Rotation
+
+        return Source(self.shape, turn @ self.place + shift, Rotation.from_matrix(turn @ self.turn).as_rotvec())
+
+
+@dataclass(frozen=True, eq=False)
+class MagnetField(MovingField):
+    """The field of magnets and coils that move as one, and whose strengths and currents vary as one.
+
+    Fields of others that move otherwise are added with ``+``, and so is a uniform field.
+
+    Parameters
+    ----------
+    sources : sequence
+        Objects of magpylib (magnets, circles, closed polylines, dipoles, collections of these), as they are now: later
+        changes of them change nothing here. Or `Source`, or shapes of `magshell.magnetics.fields`.
+    motion : Motion, optional
+        By default the strength grows from 0 to that of the sources in the first stage.
+    spacing : float, optional
+        With it the field of all sources is interpolated by splines on a lattice of this spacing, m, in the frame of the
+        sources; see `interpolation_error`.
+    name : str
+        Of its columns in `history.csv`.
+
+    Raises
+    ------
+    InputError
+        No sources; something that is no source, has no polarisation or current, or no size.
+    """
+
+    sources: Sequence[Any]
+    motion: Motion = field(default_factory=Motion)
+    spacing: float | None = None
+    name: str = "magnets"
+    _lattice: Lattice | None = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        sources = tuple(_sources_of(self.sources))
+        if not sources:
+            raise InputError(f"{self.name}: there is no magnet and no coil")
+        object.__setattr__(self, "sources", sources)
+        if self.spacing is not None and not 0.0 < self.spacing < np.inf:
+            raise InputError(f"{self.name}: spacing is {self.spacing!r} m; it must be positive")
+        lattice = None if self.spacing is None else Lattice(self._flux_density, self.spacing)
+        object.__setattr__(self, "_lattice", lattice)
+
+    @property
+    def middle(self) -> FloatArray:
+        return np.asarray(np.mean([source.place for source in self.sources], axis=0))
+
+    def own(self, points: FloatArray, second: bool) -> Values:
+        return self.direct(points, second) if self._lattice is None else self._lattice.values(points, second)
+
+    def direct(self, points: FloatArray, second: bool = True) -> Values:
+        """Values at points (n, 3) of the frame without interpolation."""
+        total = self.sources[0].values(points, second)
+        for source in self.sources[1:]:
+            total = total.plus(source.values(points, second))
+        return total
+
+    def interpolation_error(self, amounts: FloatArray, points: FloatArray) -> tuple[float, float, float]:
+        """Largest error of B, T, its gradient, T/m, and second derivatives, T/m², at points (n, 3); 0 without splines."""
+        turn, shift = self.placement(amounts)
+        frame = (points - shift) @ turn
+        pairs = zip(self.own(frame, True), self.direct(frame), strict=True)
+        errors = [float(np.abs(one - other).max(initial=0.0)) for one, other in pairs]  # type: ignore[operator]
+        return errors[0], errors[1], errors[2]
+
+    def now(self, amounts: FloatArray) -> tuple[Source, ...]:
+        """The sources in their places for given amounts."""
+        turn, shift = self.placement(amounts)
+        return tuple(source.moved(turn, shift) for source in self.sources)
+
+    def containing(self, amounts: FloatArray, points: FloatArray) -> IntArray:
+        """Number (n,) of the source in whose material each of some points (n, 3) lies; `OUTSIDE` where in none."""
+        turn, shift = self.placement(amounts)
+        frame, found = (points - shift) @ turn, np.full(len(points), OUTSIDE)
+        for number, source in enumerate(self.sources):
+            found[source.shape.inside(source.local(frame))] = number
+        return found
+
+    def _flux_density(self, points: FloatArray) -> FloatArray:
+        """B (n, 3) at points of the frame."""
+        total = np.zeros(points.shape)
+        for source in self.sources:
+            total += source.shape.flux_density(source.local(points)) @ source.turn.T
+        return total
+
+
+def _sources_of(given: Any) -> Iterable[Source]:
+    if isinstance(given, Source | Shape) or is_of_magpylib(given):
+        given = (given,)
+    try:
+        entries = list(given)
+    except TypeError:
+        raise InputError(f"magnets: {given!r} is no source and no list of sources") from None
+    for number, one in enumerate(entries):
+        if isinstance(one, Source):
+            yield one
+        elif isinstance(one, Shape):
+            yield Source(one)
+        elif is_of_magpylib(one):
+            for shape, position, rotation_vector in shapes_of(one):
+                yield Source(shape, position, rotation_vector)
+        else:
+            raise InputError(
+                f"magnets[{number}]: {type(one).__name__} is no source; it takes objects of magpylib, or Source"
+            )
