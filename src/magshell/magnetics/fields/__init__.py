@@ -1,1 +1,58 @@
-"""Magnetic fields: uniform, of magnets and coils, with a constant gradient, sampled on a grid, of any function."""
+"""Magnetic fields: uniform, of magnets and coils, with a constant gradient, from a grid, of any function.
+
+`field.py` says what a field is to the equations, `shapes.py` what a magnet or a coil is.
+"""
+
+from magshell.magnetics.fields.coils import Loop, Polygon, RectangularWinding, Solenoid
+from magshell.magnetics.fields.field import Field, FieldSum, FieldUnknown, Values
+from magshell.magnetics.fields.function import FunctionField
+from magshell.magnetics.fields.grids import read_grid
+from magshell.magnetics.fields.laboratory import CoilSystem, GradientField
+from magshell.magnetics.fields.magnets import Cuboid, Cylinder, CylinderSegment, Dipole, Ring, Sphere
+from magshell.magnetics.fields.motion import Motion
+from magshell.magnetics.fields.polyhedron import Polyhedron
+from magshell.magnetics.fields.sampled import SampledField
+from magshell.magnetics.fields.sets import halbach, helmholtz, maxwell
+from magshell.magnetics.fields.shapes import Shape
+from magshell.magnetics.fields.sources import MagnetField, Source
+from magshell.magnetics.fields.uniform import UniformField
+
+MAGNETS: dict[str, type[Shape]] = {
+    shape.kind: shape for shape in (Cuboid, Cylinder, Ring, CylinderSegment, Sphere, Dipole)
+}
+"""Shapes of single magnets by their names in problem files."""
+COILS: dict[str, type[Shape]] = {shape.kind: shape for shape in (Loop, Polygon, Solenoid, RectangularWinding)}
+"""Shapes of single coils by their names in problem files."""
+
+__all__ = [
+    "COILS",
+    "MAGNETS",
+    "CoilSystem",
+    "Cuboid",
+    "Cylinder",
+    "CylinderSegment",
+    "Dipole",
+    "Field",
+    "FieldSum",
+    "FieldUnknown",
+    "FunctionField",
+    "GradientField",
+    "Loop",
+    "MagnetField",
+    "Motion",
+    "Polygon",
+    "Polyhedron",
+    "RectangularWinding",
+    "Ring",
+    "SampledField",
+    "Shape",
+    "Solenoid",
+    "Source",
+    "Sphere",
+    "UniformField",
+    "Values",
+    "halbach",
+    "helmholtz",
+    "maxwell",
+    "read_grid",
+]

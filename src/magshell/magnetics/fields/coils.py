@@ -1,7 +1,7 @@
 """Coils: loops and polygons of wire, and windings as sheets of current.
 
-The sheet of current about a cylinder or cuboid, N I / height per length, has exactly the field of a magnet of that shape
-with the polarisation μ0 N I / height along the axis (B, not H, also inside), which magpylib has in closed form.
+The sheet of current about a cylinder or cuboid, N I / height per length, has exactly the field of a magnet of that
+shape with the polarisation μ0 N I / height along the axis (B, not H, also inside), which magpylib has in closed form.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
 from magshell.keys import Key
-from magshell.magnetics.fields.magnets import FACETS, VACUUM_PERMEABILITY
+from magshell.magnetics.fields.magnets import FACETS, VACUUM_PERMEABILITY, of_ours
 from magshell.magnetics.fields.shapes import Shape, distance_from_segments, meridian
 from magshell.units import CURRENT, LENGTH, show
 
@@ -77,7 +77,7 @@ class Loop(Coil):
     def bodies(self) -> Sequence[tuple[float, Any]]:
         from magpylib.current import Circle
 
-        return [(1.0, Circle(diameter=self.diameter, current=self.turns * self.current))]
+        return [(of_ours(), Circle(diameter=self.diameter, current=self.turns * self.current))]
 
     def distance(self, points: FloatArray) -> FloatArray:
         return np.asarray(np.linalg.norm(meridian(points) - [self.size, 0.0], axis=1))
@@ -135,7 +135,7 @@ class Polygon(Coil):
     def bodies(self) -> Sequence[tuple[float, Any]]:
         from magpylib.current import Polyline
 
-        return [(1.0, Polyline(vertices=self._closed, current=self.turns * self.current))]
+        return [(of_ours(), Polyline(vertices=self._closed, current=self.turns * self.current))]
 
     def distance(self, points: FloatArray) -> FloatArray:
         return distance_from_segments(points, np.stack([self._closed[:-1], self._closed[1:]], axis=1))
@@ -263,7 +263,7 @@ class RectangularWinding(Coil):
     @property
     def _halves(self) -> FloatArray:
         """Half sides (layers, 2)."""
-        return 0.5 * np.asarray(self.sides) + outwards(self)[:, None]
+        return np.asarray(0.5 * np.asarray(self.sides) + outwards(self)[:, None])
 
     def bodies(self) -> Sequence[tuple[float, Any]]:
         from magpylib.magnet import Cuboid
@@ -304,7 +304,7 @@ def wire(points: FloatArray, radius: float) -> Any:
 
 def outwards(winding: Solenoid | RectangularWinding) -> FloatArray:
     """Distances (layers,) of the layers from the innermost one."""
-    return (winding.spacing or 0.0) * np.arange(winding.layers)
+    return (winding.spacing or 0.0) * np.arange(winding.layers, dtype=float)
 
 
 def sheet(winding: Solenoid | RectangularWinding) -> float:

@@ -70,7 +70,7 @@ def _third_derivatives(one: FloatArray, two: FloatArray, diagonal: FloatArray) -
     }
     second = np.empty((len(one), 3, 3, 3))
     for place in np.ndindex(3, 3, 3):
-        second[(slice(None), *place)] = found[tuple(sorted(place))]  # type: ignore[index]
+        second[(slice(None), *place)] = found[tuple(sorted(place))]
     return second
 
 

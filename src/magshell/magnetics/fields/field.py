@@ -16,6 +16,21 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
+from magshell.errors import InputError
+
+
+class FieldUnknown(InputError):
+    """The field is not known at a point: outside a grid, too near to a surface for an interpolation.
+
+    Attributes
+    ----------
+    position : ndarray, shape (3,)
+        The point in the frame of the field, m.
+    """
+
+    def __init__(self, message: str, position: FloatArray) -> None:
+        super().__init__(message)
+        self.position = position
 
 
 class Values(NamedTuple):

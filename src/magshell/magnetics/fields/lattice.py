@@ -1,7 +1,7 @@
 """A field interpolated by quintic splines on a lattice, so that its values cost the same however many its sources.
 
-The lattice is fixed in the frame of the sources. Blocks of `CELLS`³ cells are sampled when a point in them is first asked
-for, and each block depends on the field alone: values do not depend on what was asked before. On a block the field is
+The lattice is fixed in the frame of the sources. Blocks of `CELLS`³ cells are sampled when a point in them is first
+asked for, and each block depends on the field alone: values do not depend on what was asked before. On a block the field is
 
     B(y) = Σ c_ijk β(y1/h − i) β(y2/h − j) β(y3/h − k),    c = (1 − δ²/4 + 13 δ⁴/240) B along each axis,
 
@@ -29,6 +29,9 @@ BEFORE = 2
 """Coefficients before the first of a cell."""
 FILTER = np.array([13.0 / 240.0, -0.25 - 4.0 * 13.0 / 240.0, 1.5 + 6.0 * 13.0 / 240.0, 0.0, 0.0])
 FILTER[3:] = FILTER[1::-1]
+NEAREST = 8
+"""Least distance, in spacings, from a singularity of the field (a surface, a wire): nearer, the error of the gradient
+is more than some 1e-4 of it."""
 MOST_BLOCKS = 2000
 FARTHEST = 1e6
 """Of a point from the origin, in spacings."""
@@ -67,7 +70,7 @@ class Lattice:
             values = self._function(grid.reshape(-1, 3)).reshape(grid.shape)
             for axis in range(3):
                 count = values.shape[axis] - 2 * MARGIN
-                values = sum(  # type: ignore[assignment]
+                values = sum(
                     weight * values.take(np.arange(k, k + count), axis=axis) for k, weight in enumerate(FILTER)
                 )
             self._blocks[key] = np.ascontiguousarray(values)

@@ -18,6 +18,11 @@ from magshell.magnetics.fields.polyhedron import Polyhedron
 from magshell.magnetics.fields.shapes import Shape
 
 
+def _cylinder(one: Any) -> Shape:
+    diameter, height = np.asarray(one.dimension, dtype=float).tolist()
+    return Cylinder(diameter, height, one.polarization)
+
+
 def _segment(one: Any) -> Shape:
     inner, outer, height, start, end = np.asarray(one.dimension, dtype=float).tolist()
     J = one.polarization
@@ -42,7 +47,7 @@ def _tetrahedron(one: Any) -> Shape:
 
 KNOWN: Mapping[str, tuple[tuple[str, ...], Callable[[Any], Shape]]] = {
     "Cuboid": (("dimension", "polarization"), lambda one: Cuboid(one.dimension, one.polarization)),
-    "Cylinder": (("dimension", "polarization"), lambda one: Cylinder(*_plain(one.dimension), one.polarization)),
+    "Cylinder": (("dimension", "polarization"), _cylinder),
     "CylinderSegment": (("dimension", "polarization"), _segment),
     "Sphere": (("diameter", "polarization"), lambda one: Sphere(float(one.diameter), one.polarization)),
     "Tetrahedron": (("vertices", "polarization"), _tetrahedron),
@@ -54,10 +59,6 @@ KNOWN: Mapping[str, tuple[tuple[str, ...], Callable[[Any], Shape]]] = {
     "Circle": (("diameter", "current"), lambda one: Loop(float(one.diameter), one.current)),
     "Polyline": (("vertices", "current"), _polygon),
 }
-
-
-def _plain(numbers: Any) -> list[float]:
-    return [float(number) for number in numbers]
 
 
 def is_of_magpylib(one: object) -> bool:

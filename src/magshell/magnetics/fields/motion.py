@@ -173,13 +173,15 @@ class MovingField(Field):
             turned = np.cross(spin, one.flux_density)
             B = B + m * (turned - np.einsum("pij,pj->pi", one.gradient, velocity))
             gradient = gradient + m * (cross @ one.gradient - one.gradient @ cross)
+            assert one.second is not None
             gradient = gradient - m * np.einsum("pijk,pk->pij", one.second, velocity)
         return Values(B, gradient, None)
 
     def _unscaled(self, amounts: FloatArray, points: FloatArray, second: bool, multiplier: float) -> Values:
         turn, shift = self.placement(amounts)
         still = amounts[4] == 0.0
-        frame = points - shift if still else (points - shift) @ turn
+        with np.errstate(invalid="ignore"):
+            frame = points - shift if still else (points - shift) @ turn
         values = self.own(frame, second) if np.isfinite(frame).all() else self._where_finite(frame, second)
         return turned(values, None if still else turn, multiplier)
 

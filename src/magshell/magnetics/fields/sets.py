@@ -97,8 +97,8 @@ def halbach(
     inner = radius - 0.5 * sides[0]
     if inner <= 0.0 or 2.0 * inner * np.tan(np.pi / count) < sides[1] * (1.0 - 1e-9):
         raise InputError(
-            f"halbach: {count} magnets of {sides[0]:g} × {sides[1]:g} m overlap on a circle of {radius:g} m radius; make "
-            "it larger or the magnets smaller"
+            f"halbach: {count} magnets of {sides[0]:g} × {sides[1]:g} m overlap on a circle of {radius:g} m radius; "
+            "make it larger or the magnets smaller"
         )
     ring = []
     for angle in 2.0 * np.pi * np.arange(count) / count:

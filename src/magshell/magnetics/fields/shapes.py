@@ -80,9 +80,7 @@ class Shape(ABC):
         """B and its derivatives at points (n, 3)."""
         step = STEP * np.maximum(self.distance(points), LEAST * self.size)
         starts = range(0, len(points), AT_ONCE)
-        pieces = [
-            harmonic(self.flux_density, points[k : k + AT_ONCE], step[k : k + AT_ONCE], second) for k in starts
-        ]
+        pieces = [harmonic(self.flux_density, points[k : k + AT_ONCE], step[k : k + AT_ONCE], second) for k in starts]
         if len(pieces) == 1:
             return pieces[0]
         B, gradient = (np.concatenate([piece[part] for piece in pieces] or [np.empty(shape)]) for part, shape in PARTS)

@@ -131,6 +131,4 @@ def _everywhere(flux_density: FloatArray, count: int, second: bool) -> Values:
     def zero(*shape: int) -> FloatArray:
         return np.broadcast_to(0.0, (count, *shape))
 
-    return Values(
-        np.broadcast_to(flux_density, (count, 3)), zero(3, 3), zero(3, 3, 3) if second else None
-    )
+    return Values(np.broadcast_to(flux_density, (count, 3)), zero(3, 3), zero(3, 3, 3) if second else None)

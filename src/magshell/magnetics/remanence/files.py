@@ -16,10 +16,10 @@ from magshell.errors import InputError, suggest
 from magshell.keys import Key
 from magshell.magnetics.remanence.deformed import Deformed
 from magshell.magnetics.remanence.sampled import at_places, per_element
-from magshell.tables import LARGEST, Columns, Table, duplicate, read_table, unreadable
 from magshell.magnetics.remanence.template import Placed, in_template
 from magshell.magnetics.remanence.vectors import Remanence
 from magshell.magnetics.remanence.way import Way
+from magshell.tables import LARGEST, Columns, Table, duplicate, read_table, unreadable
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh

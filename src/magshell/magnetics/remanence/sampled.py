@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike
 
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.errors import InputError
-from magshell.tables import duplicate
 from magshell.magnetics.remanence.vectors import Remanence
 from magshell.mesh.geometry import centres
+from magshell.tables import duplicate
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh
