@@ -5,7 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from magshell.magnetics import fields
-from magshell.magnetics.fields import CoilSystem, FunctionField, GradientField, MagnetField, Motion, SampledField, Source
+from magshell.magnetics.fields import (
+    CoilSystem,
+    FunctionField,
+    GradientField,
+    MagnetField,
+    Motion,
+    SampledField,
+    Source,
+)
 
 J = (0.3, -0.2, 1.3)
 TETRAHEDRON = ([(0, 0, 0), (0.02, 0, 0), (0, 0.02, 0), (0, 0, 0.015)], [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)])
@@ -31,7 +39,9 @@ MOTION = Motion((1.0, 0.5), [(0.01, 0.0, -0.004), (0.002, 0.003, 0.0)], (1, 2, -
 def harmonic(points):
     """The gradient of a harmonic polynomial, with B of a few mT over 0.1 m."""
     x, y, z = points.T
-    return np.stack([0.05 * y + 0.2 * y * z + 0.01, 0.05 * x + 0.2 * x * z, 0.2 * x * y + 3.0 * (x**2 - y**2) * 0.0], axis=1)
+    return np.stack(
+        [0.05 * y + 0.2 * y * z + 0.01, 0.05 * x + 0.2 * x * z, 0.2 * x * y + 3.0 * (x**2 - y**2) * 0.0], axis=1
+    )
 
 
 def sampled(function=harmonic, step=0.01, motion=None):

@@ -96,7 +96,7 @@ def test_later_changes_of_the_object_change_nothing():
         (lambda: magpylib.misc.CustomSource(), "CustomSource is not known here; known are Cuboid"),
         (lambda: magpylib.Sensor(), "Sensor is not known here"),
         (lambda: magpylib.Collection(), "there is no magnet and no coil"),
-        (lambda: [], "there is no magnet and no coil"),
+        (list, "there is no magnet and no coil"),
         (lambda: 3.0, "3.0 is no source and no list of sources"),
         (lambda: ["magnet"], r"magnets\[0\]: str is no source"),
     ],

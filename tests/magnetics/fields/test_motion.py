@@ -30,7 +30,9 @@ def test_the_derivatives_are_those_of_the_field(name):
         slope = (ahead.flux_density - behind.flux_density) / (2.0 * step)
         assert size(values.gradient[:, :, j] - slope) <= 1e-4 * size(values.gradient) + 1e-12
         bend = (ahead.gradient - behind.gradient) / (2.0 * step)
-        assert size(values.second[:, :, :, j] - bend) <= 1e-4 * size(values.second) + 1e-9 * size(values.gradient) / step
+        assert (
+            size(values.second[:, :, :, j] - bend) <= 1e-4 * size(values.second) + 1e-9 * size(values.gradient) / step
+        )
     without = field.at(amounts, points, second=False)
     assert without.second is None
     assert np.allclose(without.gradient, values.gradient, rtol=0.0, atol=1e-12 * size(values.gradient))

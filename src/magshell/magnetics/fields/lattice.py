@@ -1,7 +1,8 @@
 """A field interpolated by quintic splines on a lattice, so that its values cost the same however many its sources.
 
 The lattice is fixed in the frame of the sources. Blocks of `CELLS`³ cells are sampled when a point in them is first
-asked for, and each block depends on the field alone: values do not depend on what was asked before. On a block the field is
+asked for, and each block depends on the field alone: values do not depend on what was asked before. On a block the
+field is
 
     B(y) = Σ c_ijk β(y1/h − i) β(y2/h − j) β(y3/h − k),    c = (1 − δ²/4 + 13 δ⁴/240) B along each axis,
 

@@ -38,7 +38,7 @@ def _polygon(one: Any) -> Shape:
             "the polyline is open: its last vertex is not its first. A current flows in closed loops; the field of an "
             "open line is not free of curl"
         )
-    return Polygon(vertices[:-1], one.current)
+    return Polygon(vertices[:-1], float(one.current))
 
 
 def _tetrahedron(one: Any) -> Shape:
@@ -56,7 +56,7 @@ KNOWN: Mapping[str, tuple[tuple[str, ...], Callable[[Any], Shape]]] = {
         lambda one: Polyhedron(one.vertices, one.faces, one.polarization),
     ),
     "Dipole": (("moment",), lambda one: Dipole(one.moment)),
-    "Circle": (("diameter", "current"), lambda one: Loop(float(one.diameter), one.current)),
+    "Circle": (("diameter", "current"), lambda one: Loop(float(one.diameter), float(one.current))),
     "Polyline": (("vertices", "current"), _polygon),
 }
 

@@ -161,8 +161,8 @@ class MagnetField(MovingField):
                 place = ", ".join(f"{x:.6g}" for x in points[nearest])
                 raise FieldUnknown(
                     f"{self.name}: the point ({place}) m is {distance[nearest]:.3g} m from the surface of a "
-                    f"{source.shape.kind}; splines of spacing {self.spacing:g} m are for {least:.3g} m and more. Choose "
-                    f"a spacing of {max(distance[nearest], 0.0) / NEAREST:.2g} m or less, or none",
+                    f"{source.shape.kind}; splines of spacing {self.spacing:g} m are for {least:.3g} m and more. "
+                    f"Choose a spacing of {max(distance[nearest], 0.0) / NEAREST:.2g} m or less, or none",
                     points[nearest],
                 )
 
