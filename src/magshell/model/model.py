@@ -108,6 +108,11 @@ class Model:
     _ends: tuple[Amounts, ...] = dataclasses.field(init=False, repr=False)
 
     def __post_init__(self) -> None:
+        if not isinstance(self.field, UniformField):
+            raise InputError(
+                "field: it varies in space (magnets, coils, a gradient, a grid, a function), and the equations have no "
+                "forces of such a field yet; a model takes a UniformField"
+            )
         mesh = self.shell.mesh
         put = object.__setattr__
         if self.coupling is None:

@@ -17,6 +17,7 @@ from magshell.magnetics.fields import Cylinder, MagnetField, Source
 MU0 = 4e-7 * np.pi
 HALF = np.array([5e-3, 5e-3, 0.25e-3])
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
+PLANE = np.meshgrid(NODES, NODES)
 MAGNET = MagnetField([Source(Cylinder(0.02, 0.02, (0.0, 0.0, 1.3)), (0.0, 0.0, -0.01))])
 
 with (pathlib.Path(__file__).parent / "plate_over_magnet.csv").open() as file:
@@ -30,9 +31,7 @@ def by_charges(J, centre):
         for side in (-1.0, 1.0):
             away = np.zeros((len(NODES), len(NODES), 3))
             away[..., axis] = side * HALF[axis]
-            away[..., others[0]], away[..., others[1]] = (
-                HALF[k] * x for k, x in zip(others, np.meshgrid(NODES, NODES))
-            )
+            away[..., others[0]], away[..., others[1]] = (HALF[k] * x for k, x in zip(others, PLANE, strict=True))
             areas = np.outer(WEIGHTS, WEIGHTS).ravel() * HALF[others[0]] * HALF[others[1]]
             away = away.reshape(-1, 3)
             load = (side * J[axis] / MU0 * areas)[:, None] * MAGNET.direct(away + centre, False).flux_density

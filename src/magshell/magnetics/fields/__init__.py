@@ -12,17 +12,22 @@ from magshell.magnetics.fields.magnets import Cuboid, Cylinder, CylinderSegment,
 from magshell.magnetics.fields.motion import Motion
 from magshell.magnetics.fields.polyhedron import Polyhedron
 from magshell.magnetics.fields.sampled import SampledField
-from magshell.magnetics.fields.sets import halbach, helmholtz, maxwell
+from magshell.magnetics.fields.sets import HALBACH_KEYS, PAIR_KEYS, halbach, helmholtz, maxwell
 from magshell.magnetics.fields.shapes import Shape
-from magshell.magnetics.fields.sources import MagnetField, Source
+from magshell.magnetics.fields.sources import Kind, MagnetField, Source
 from magshell.magnetics.fields.uniform import UniformField
 
-MAGNETS: dict[str, type[Shape]] = {
-    shape.kind: shape for shape in (Cuboid, Cylinder, Ring, CylinderSegment, Sphere, Dipole)
+MAGNETS: dict[str, Kind] = {
+    **{shape.kind: Kind(shape, shape.keys) for shape in (Cuboid, Cylinder, Ring, CylinderSegment, Sphere, Dipole)},
+    "halbach": Kind(halbach, HALBACH_KEYS),
 }
-"""Shapes of single magnets by their names in problem files."""
-COILS: dict[str, type[Shape]] = {shape.kind: shape for shape in (Loop, Polygon, Solenoid, RectangularWinding)}
-"""Shapes of single coils by their names in problem files."""
+"""Magnets and sets of them by their names in problem files."""
+COILS: dict[str, Kind] = {
+    **{shape.kind: Kind(shape, shape.keys) for shape in (Loop, Polygon, Solenoid, RectangularWinding)},
+    "helmholtz": Kind(helmholtz, PAIR_KEYS),
+    "maxwell": Kind(maxwell, PAIR_KEYS),
+}
+"""Coils and sets of them by their names in problem files."""
 
 __all__ = [
     "COILS",
@@ -37,6 +42,7 @@ __all__ = [
     "FieldUnknown",
     "FunctionField",
     "GradientField",
+    "Kind",
     "Loop",
     "MagnetField",
     "Motion",

@@ -154,7 +154,9 @@ def _of_vtk(path: pathlib.Path) -> tuple[list[FloatArray], FloatArray]:
     import pyvista
 
     try:
-        grid = pyvista.read(path)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # what VTK's readers only warn of
+            grid = pyvista.read(path)
     except Exception as error:  # of VTK's readers, whatever they raise
         raise InputError(unreadable(path, error)) from None
     if isinstance(grid, pyvista.ImageData):

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
+from magshell.keys import Key
 from magshell.magnetics.fields.field import FieldUnknown, Values
 from magshell.magnetics.fields.lattice import NEAREST, Lattice
 from magshell.magnetics.fields.magpy import is_of_magpylib, shapes_of
@@ -70,6 +71,32 @@ class Source:
         from scipy.spatial.transform import Rotation
 
         return Source(self.shape, turn @ self.place + shift, Rotation.from_matrix(turn @ self.turn).as_rotvec())
+
+
+class Kind(NamedTuple):
+    """A magnet or a coil, or a set of them, that problem files know.
+
+    Attributes
+    ----------
+    make : callable
+        From the values of the keys to a shape, or to sources that are placed about the origin.
+    keys : mapping of str to Key
+        Its parameters.
+    """
+
+    make: Callable[..., Shape | Sequence[Source]]
+    keys: Mapping[str, Key]
+
+    def sources(self, **values: Any) -> tuple[Source, ...]:
+        """The sources about the origin.
+
+        Raises
+        ------
+        InputError
+            Values that do not make one.
+        """
+        made = self.make(**values)
+        return (Source(made),) if isinstance(made, Shape) else tuple(made)
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,18 +5,28 @@ from __future__ import annotations
 from pydantic import model_validator
 
 from magshell.problem import fields as f
+from magshell.problem.schema.sources import CoilSystemTable, GradientTable, SampledTable
 from magshell.problem.schema.table import Table, key_error
 
 
 class FieldTable(Table):
     """The external field."""
 
-    flux_density: f.FluxVector
+    flux_density: f.FluxVector = (0.0, 0.0, 0.0)
     history: f.History | None = None
     rotation_axis: f.Direction | None = None
     rotation: f.Rotation | None = None
     stops: tuple[f.PositiveFluxDensity, ...] = ()
     coupling: f.Coupling = "couple"
+    gradient: GradientTable | None = None
+    sampled: SampledTable | None = None
+    coils: CoilSystemTable | None = None
+    spline_spacing: f.PositiveLength | None = None
+
+    @property
+    def varies(self) -> bool:
+        """Whether there is more than the uniform part."""
+        return any(part is not None for part in (self.gradient, self.sampled, self.coils))
 
     @model_validator(mode="after")
     def _axis_and_angles_go_together(self) -> FieldTable:
