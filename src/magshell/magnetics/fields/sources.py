@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -73,7 +73,8 @@ class Source:
         return Source(self.shape, turn @ self.place + shift, Rotation.from_matrix(turn @ self.turn).as_rotvec())
 
 
-class Kind(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Kind:
     """A magnet or a coil, or a set of them, that problem files know.
 
     Attributes

@@ -48,6 +48,7 @@ from magshell.problem.schema.sources import (
     CoilTable,
     GradientTable,
     MagnetTable,
+    MotionTable,
     SampledTable,
     SourceTable,
 )
@@ -71,6 +72,7 @@ __all__ = [
     "Mesh",
     "MeshFile",
     "Miura",
+    "MotionTable",
     "Polygon",
     "ProblemFile",
     "Profile",
