@@ -42,8 +42,8 @@ class Magnet(Shape):
         return f"polarisation {quantity(tuple(np.asarray(self.polarisation).tolist()), REMANENCE)}"
 
     @property
-    def _polarisation(self) -> tuple[float, ...]:
-        return tuple(np.asarray(self.polarisation).tolist())
+    def poles(self) -> FloatArray:
+        return np.asarray(self.polarisation)
 
 
 @dataclass(frozen=True, eq=False)
@@ -364,6 +364,10 @@ class Dipole(Shape):
 
     def distance(self, points: FloatArray) -> FloatArray:
         return np.asarray(np.linalg.norm(points, axis=1))
+
+    @property
+    def poles(self) -> FloatArray:
+        return np.asarray(self.moment)
 
     def surface(self) -> Any:
         import pyvista

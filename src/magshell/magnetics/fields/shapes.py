@@ -61,6 +61,11 @@ class Shape(ABC):
         """Which of some points (n, 3) lie in its material."""
         return np.zeros(len(points), dtype=bool)
 
+    @property
+    def poles(self) -> FloatArray | None:
+        """Direction (3,) from its south to its north pole, of any length; None: it is a coil."""
+        return None
+
     @abstractmethod
     def surface(self) -> Any:
         """Its surface, a `pyvista.PolyData`."""
@@ -72,8 +77,9 @@ class Shape(ABC):
     def flux_density(self, points: FloatArray) -> FloatArray:
         """B (n, 3), T, at points (n, 3)."""
         total = np.zeros(points.shape)
-        for factor, body in self._bodies:
-            total += factor * body.getB(points).reshape(points.shape)
+        with np.errstate(all="ignore"):  # at edges and wires, where B is not finite
+            for factor, body in self._bodies:
+                total += factor * body.getB(points).reshape(points.shape)
         return total
 
     def values(self, points: FloatArray, second: bool) -> Values:

@@ -16,7 +16,7 @@ from magshell.magnetics.fields.field import FieldUnknown, Values
 from magshell.magnetics.fields.lattice import NEAREST, Lattice
 from magshell.magnetics.fields.magpy import is_of_magpylib, shapes_of
 from magshell.magnetics.fields.motion import Motion, MovingField, rotation, turned, vector
-from magshell.magnetics.fields.shapes import Shape
+from magshell.magnetics.fields.shapes import LEAST, Shape
 
 OUTSIDE = -1
 
@@ -147,10 +147,8 @@ class MagnetField(MovingField):
         return np.asarray(np.mean([source.place for source in self.sources], axis=0))
 
     def own(self, points: FloatArray, second: bool) -> Values:
-        if self._lattice is None:
-            return self.direct(points, second)
-        self._check_far_enough(points)
-        return self._lattice.values(points, second)
+        self._check_known(points)
+        return self.direct(points, second) if self._lattice is None else self._lattice.values(points, second)
 
     def direct(self, points: FloatArray, second: bool = True) -> Values:
         """Values at points (n, 3) of the frame without interpolation."""
@@ -180,19 +178,35 @@ class MagnetField(MovingField):
             found[source.shape.inside(source.local(frame))] = number
         return found
 
-    def _check_far_enough(self, points: FloatArray) -> None:
-        least = NEAREST * float(self.spacing or 0.0)
+    def _check_known(self, points: FloatArray) -> None:
+        """Refuse points on surfaces and wires, where magpylib gives 0, and those too near for the splines."""
         for source in self.sources:
-            distance = source.shape.distance(source.local(points))
-            nearest = int(np.argmin(distance)) if len(distance) else 0
-            if len(distance) and distance[nearest] < least:
-                place = ", ".join(f"{x:.6g}" for x in points[nearest])
-                raise FieldUnknown(
-                    f"{self.name}: the point ({place}) m is {distance[nearest]:.3g} m from the surface of a "
-                    f"{source.shape.kind}; splines of spacing {self.spacing:g} m are for {least:.3g} m and more. "
-                    f"Choose a spacing of {max(distance[nearest], 0.0) / NEAREST:.2g} m or less, or none",
-                    points[nearest],
-                )
+            least = LEAST * source.shape.size if self.spacing is None else NEAREST * self.spacing
+            away = np.linalg.norm(points - source.place, axis=1)
+            near = np.flatnonzero(away <= source.shape.size + least)
+            distance = source.shape.distance(source.local(points[near]))
+            if not np.any(distance <= least):
+                continue
+            nearest = int(np.argmin(distance))
+            raise FieldUnknown(
+                self._fault(source, points[near[nearest]], float(distance[nearest])), points[near[nearest]]
+            )
+
+    def _fault(self, source: Source, point: FloatArray, distance: float) -> str:
+        kind, place = source.shape.kind, ", ".join(f"{x:.6g}" for x in point)
+        frame = (
+            "" if self.motion.displacement is None and self.motion.rotation is None else " in the frame of the sources"
+        )
+        where = f"{self.name}: the point ({place}) m{frame} is"
+        if distance <= LEAST * source.shape.size:
+            return (
+                f"{where} on the surface or wire of a {kind}, where its field jumps or has no limit; move one of them"
+            )
+        return (
+            f"{where} {distance:.3g} m from the surface of a {kind}; splines of spacing {self.spacing:g} m are for "
+            f"{NEAREST * float(self.spacing or 0.0):.3g} m and more. Choose a spacing of {distance / NEAREST:.2g} m or "
+            "less, or none"
+        )
 
     def _flux_density(self, points: FloatArray) -> FloatArray:
         """B (n, 3) at points of the frame."""
