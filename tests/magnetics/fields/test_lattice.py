@@ -71,10 +71,10 @@ def test_too_near_for_the_spacing():
 def test_a_halbach_ring_of_16_costs_what_one_magnet_costs():
     """Counted in calls for values of B, not in seconds: none, once the lattice is there."""
     calls = []
-    ring = MagnetField(halbach(0.05, 16, (0.01, 0.01, 0.01), 1.3), spacing=3e-3)
+    ring = MagnetField(halbach(0.05, 16, (0.01, 0.01, 0.01), 1.3), spacing=2.5e-3)
     inner = ring._lattice._function
     ring._lattice._function = lambda points: calls.append(len(points)) or inner(points)
-    amounts, points = ring.ends(1)[1], near(500)
+    amounts, points = ring.ends(1)[1], 0.5 * near(500)
     ring.at(amounts, points)
     assert calls
     calls.clear()

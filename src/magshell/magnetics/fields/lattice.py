@@ -14,6 +14,7 @@ gradients are those of the interpolated B.
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import comb
 
 import numpy as np
 
@@ -30,6 +31,16 @@ BEFORE = 2
 """Coefficients before the first of a cell."""
 FILTER = np.array([13.0 / 240.0, -0.25 - 4.0 * 13.0 / 240.0, 1.5 + 6.0 * 13.0 / 240.0, 0.0, 0.0])
 FILTER[3:] = FILTER[1::-1]
+PIECES = np.array(
+    [
+        [
+            sum((-1) ** j * comb(6, j) * comb(5, power) * (5 - k - j) ** (5 - power) for j in range(6 - k)) / 120.0
+            for power in range(6)
+        ]
+        for k in range(6)
+    ]
+)
+"""β(t + 2 − k), for t in [0, 1], as Σ PIECES[k, power] t**power."""
 NEAREST = 8
 """Least distance, in spacings, from a singularity of the field (a surface, a wire): nearer, the error of the gradient
 is more than some 1e-4 of it."""
@@ -50,11 +61,11 @@ class Lattice:
         h = self._spacing
         places = points / h
         blocks = np.floor(np.clip(places, -FARTHEST, FARTHEST) / CELLS).astype(np.int64)
-        found, number = np.unique(blocks, axis=0, return_inverse=True)
-        order = np.argsort(number.ravel(), kind="stable")
-        ends = np.cumsum(np.bincount(number.ravel(), minlength=len(found)))
+        order = np.lexsort(blocks.T)
+        starts = np.flatnonzero(np.any(np.diff(blocks[order], axis=0, prepend=blocks[order[:1]] - 1) != 0, axis=1))
         out = np.zeros((len(points), 10, 3))
-        for block, members in zip(found, np.split(order, ends[:-1]), strict=True):
+        for members in np.split(order, starts[1:]) if len(points) else ():
+            block = blocks[members[0]]
             _evaluate(self._coefficients(block), places, block * CELLS, members, out)
         B, gradient = out[:, 0], out[:, 1:4].transpose(0, 2, 1) / h
         return Values(B, gradient, _filled(out[:, 4:]) / h**2 if second else None)
@@ -99,18 +110,11 @@ def _evaluate(
             start[axis] = cell
             t = places[p, axis] - first[axis] - cell
             for k in range(6):
-                # β at s = t + 2 − k, and its first two derivatives
-                s = t + 2.0 - k
-                value, slope, bend = 0.0, 0.0, 0.0
-                factor = 1.0
-                for j in range(7):
-                    if j > 0:
-                        factor *= -(7.0 - j) / j
-                    x = s + 3.0 - j
-                    if x > 0.0:
-                        value += factor * x**5 / 120.0
-                        slope += factor * x**4 / 24.0
-                        bend += factor * x**3 / 6.0
+                value, slope, bend = PIECES[k, 5], 0.0, 0.0
+                for power in range(4, -1, -1):
+                    bend = bend * t + 2.0 * slope
+                    slope = slope * t + value
+                    value = value * t + PIECES[k, power]
                 weights[axis, 0, k] = value
                 weights[axis, 1, k] = slope
                 weights[axis, 2, k] = bend
