@@ -64,7 +64,11 @@ class Loop(Coil):
     current: float
     turns: int = 1
     kind: ClassVar[str] = "loop"
-    keys: ClassVar = {"diameter": Key("PositiveLength", ""), "current": CURRENT_KEY, "turns": TURNS}
+    keys: ClassVar = {
+        "diameter": Key("PositiveLength", "Of the middle of the wire."),
+        "current": CURRENT_KEY,
+        "turns": TURNS,
+    }
 
     def __post_init__(self) -> None:
         self._positive("diameter")

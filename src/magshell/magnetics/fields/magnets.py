@@ -110,7 +110,7 @@ class Cylinder(Magnet):
     height: float
     polarisation: ArrayLike
     kind: ClassVar[str] = "cylinder"
-    keys: ClassVar = {"diameter": Key("PositiveLength", ""), "height": HEIGHT, "polarisation": POLARISATION}
+    keys: ClassVar = {"diameter": Key("PositiveLength", "Across."), "height": HEIGHT, "polarisation": POLARISATION}
 
     def __post_init__(self) -> None:
         self._positive("diameter", "height")
@@ -161,8 +161,8 @@ class Ring(Magnet):
     polarisation: ArrayLike
     kind: ClassVar[str] = "ring"
     keys: ClassVar = {
-        "inner_diameter": Key("PositiveLength", ""),
-        "outer_diameter": Key("PositiveLength", ""),
+        "inner_diameter": Key("PositiveLength", "Of the hole."),
+        "outer_diameter": Key("PositiveLength", "Across."),
         "height": HEIGHT,
         "polarisation": POLARISATION,
     }
@@ -223,7 +223,7 @@ class CylinderSegment(Magnet):
     kind: ClassVar[str] = "cylinder-segment"
     keys: ClassVar = {
         "inner_diameter": Key("NonNegativeLength", "May be 0."),
-        "outer_diameter": Key("PositiveLength", ""),
+        "outer_diameter": Key("PositiveLength", "Across."),
         "height": HEIGHT,
         "angles": Key("Sector", "From where to where, about its third axis from the first."),
         "polarisation": POLARISATION,
@@ -293,7 +293,7 @@ class Sphere(Magnet):
     diameter: float
     polarisation: ArrayLike
     kind: ClassVar[str] = "sphere"
-    keys: ClassVar = {"diameter": Key("PositiveLength", ""), "polarisation": POLARISATION}
+    keys: ClassVar = {"diameter": Key("PositiveLength", "Across."), "polarisation": POLARISATION}
 
     def __post_init__(self) -> None:
         self._positive("diameter")
