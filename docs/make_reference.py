@@ -353,7 +353,7 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "gradient": "A constant gradient; this and the next are described on the page [Fields](fields.md).",
             "sampled": "A grid, from a file.",
             "coils": "Coils by their calibration.",
-            "spline_spacing": "With it, the field of magnets and coils is interpolated; see [Splines](fields.md#splines).",
+            "spline_spacing": "Interpolates the field of magnets and coils, see [Splines](fields.md#splines).",
         },
     ),
     "source": (
@@ -387,8 +387,8 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
         schema.CoilSystemTable,
         {
             "name": MOTION["name"],
-            "calibration": "CSV without headings, a column for each coil: T/A for B1, B2, B3, and T/m/A for ∂B1/∂x1, ∂B1/∂x2, "
-            "∂B1/∂x3, ∂B2/∂x2, ∂B2/∂x3; or the first three rows only.",
+            "calibration": "CSV without headings, a column for each coil: T/A for B1, B2, B3, and T/m/A for ∂B1/∂x1, "
+            "∂B1/∂x2, ∂B1/∂x3, ∂B2/∂x2, ∂B2/∂x3; or the first three rows only.",
             "currents": "At the end of each stage, one for each coil.",
             "centre": "Of the calibration.",
         },

@@ -17,8 +17,8 @@ SOURCES = pathlib.Path(magshell.__file__).parent
 LAYERS = (
     "version", "keys", "errors", "units", "wording", "arrays", "multipliers", "files", "tables", "drawing",
     "kernel_cache", "compiled", "processes", "openblas", "mesh", "materials", "magnetics", "shell",
-    "magnetics.remanence", "model", "linalg", "equations", "evaluation", "solver", "output", "progress", "problem", "results", "sweep",
-    "reproduction", "cli", "__main__", "",
+    "magnetics.remanence", "model", "linalg", "equations", "evaluation", "solver", "output", "progress", "problem",
+    "results", "sweep", "reproduction", "cli", "__main__", "",
 )  # fmt: skip
 # The one module that finds others upward, by name: from objects to their pictures.
 DOOR = "magshell.drawing"

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import magpylib
 import numpy as np
 import pytest
@@ -112,3 +115,14 @@ def test_containing_names_the_magnet(name):
     found = set(field.containing(field.ends(1)[1], near(300)).tolist())
     solid = not SHAPES[name].is_coil and name != "dipole"
     assert found == ({-1, 1} if solid else {-1})
+
+
+def test_magpylib_is_imported_with_the_first_value_only():
+    code = (
+        "import sys, magshell as ms\n"
+        "field = ms.UniformField((0, 0, 1)) + ms.MagnetField(ms.helmholtz(0.1, 1.0))\n"
+        "assert 'magpylib' not in sys.modules\n"
+        "field.at(field.ends(1)[1], [[0.0, 0.0, 0.0]] @ __import__('numpy').eye(3))\n"
+        "assert 'magpylib' in sys.modules\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
