@@ -26,6 +26,7 @@ from magshell import keys, units
 from magshell.evaluation.outputs import OUTPUTS, Output
 from magshell.evaluation.series import SERIES
 from magshell.magnetics import COUPLINGS
+from magshell.magnetics.fields import COILS, MAGNETS, Kind
 from magshell.magnetics.remanence import REMANENCES
 from magshell.materials import MATERIALS, MODULI, keys_of
 from magshell.model.loads import LOADS
@@ -39,6 +40,7 @@ from magshell.shell.elements import ELEMENTS
 
 PAGE = pathlib.Path(__file__).parent / "problem-file.md"
 RESULTS = pathlib.Path(__file__).parent / "pictures.md"
+FIELDS = pathlib.Path(__file__).parent / "fields.md"
 REACTIONS = pathlib.Path(__file__).parent / "reactions.md"
 
 KINDS = {
@@ -69,6 +71,18 @@ KINDS = {
     fields.Pressure: "stress, not 0",
     fields.PositiveDensity: "density > 0",
     fields.History: "list of numbers",
+    fields.Displacements: "list of three lengths each",
+    fields.Polarisation: "three remanences, not all 0",
+    fields.MagneticMoment: "three magnetic moments, not all 0",
+    fields.Current: "current, not 0",
+    fields.Currents: "list of lists of currents",
+    fields.Sides: "three lengths > 0",
+    fields.PlaneSides: "two lengths > 0",
+    fields.Sector: "two angles",
+    fields.Places: "three or more places, each three lengths",
+    fields.GradientTensor: "three rows of three gradients",
+    fields.FluxDensityUnit: "unit of flux density",
+    fields.ProbeName: "name",
     fields.Rotation: "list of angles",
     tuple[fields.PositiveNumber, ...]: "list of numbers in (0, 1], rising",
     fields.Number: "number",
@@ -127,6 +141,14 @@ SHAPES = {
     "polygon": "Corners of a polygon in the plane $X_1$–$X_2$: in it, above or below.",
 }
 HISTORY = {"history": keys.HISTORY.meaning}
+MOTION = {
+    "name": "For messages and columns.",
+    "history": "Multiplier of the strength or current at the end of each stage.",
+    "displacement": "At the end of each stage, from where it is before the first.",
+    "rotation_axis": "About which it turns along the path.",
+    "rotation": "Angle by which it is turned at the end of each stage.",
+    "rotation_centre": "A point of the axis, which moves with the displacement.",
+}
 
 TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
     "rectangle": (
@@ -359,6 +381,47 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "rotation": "Angle by which it is turned at the end of each stage.",
             "stops": "Magnitudes that the path must hit wherever it passes them; the end is always hit.",
             "coupling": "The law that couples field and shell, see the [theory page](theory.md#5-magnetic-coupling).",
+            "gradient": "A constant gradient; this and the next are described on the page [Fields](fields.md).",
+            "sampled": "A grid, from a file.",
+            "coils": "Coils by their calibration.",
+            "spline_spacing": "Interpolates the field of magnets and coils, see [Splines](fields.md#splines).",
+        },
+    ),
+    "source": (
+        schema.SourceTable,
+        {
+            "shape": "Which magnet or coil.",
+            "position": "Of its middle before the first stage.",
+            "orientation_axis": "About which it is turned before the first stage.",
+            "orientation": "By how much.",
+            **MOTION,
+        },
+    ),
+    "field-gradient": (
+        schema.GradientTable,
+        {
+            "tensor": "∂B_i/∂x_j: symmetric, its diagonal adding up to 0.",
+            "centre": "Where it adds nothing to the uniform part.",
+            **MOTION,
+        },
+    ),
+    "field-sampled": (
+        schema.SampledTable,
+        {
+            "file": "CSV, `.vti`, `.vtr`, `.vtk`, `.npz` or `.npy`.",
+            "flux_density_unit": 'Unit of its vectors, such as `"mT"`.',
+            "length_unit": "Unit of its positions.",
+            **MOTION,
+        },
+    ),
+    "field-coils": (
+        schema.CoilSystemTable,
+        {
+            "name": MOTION["name"],
+            "calibration": "CSV without headings, a column for each coil: T/A for B1, B2, B3, and T/m/A for ∂B1/∂x1, "
+            "∂B1/∂x2, ∂B1/∂x3, ∂B2/∂x2, ∂B2/∂x3; or the first three rows only.",
+            "currents": "At the end of each stage, one for each coil.",
+            "centre": "Of the calibration.",
         },
     ),
     "stage": (
@@ -408,6 +471,8 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "regions": "Elements of another thickness, material, density or remanence.",
             "remanence": "The remanent flux density; elements without one have none.",
             "field": "The external field.",
+            "magnets": "Magnets, see [Fields](fields.md); no model takes them yet.",
+            "coils": "Coils, see [Fields](fields.md); no model takes them yet.",
             "loads": "Mechanical loads.",
             "supports": "What holds the shell.",
             "springs": "Elastic supports.",
@@ -465,6 +530,8 @@ TOP = {
     "solver": "table",
     "regions": "list of tables",
     "remanence": "list of tables",
+    "magnets": "list of tables",
+    "coils": "list of tables",
     "loads": "list of tables",
     "supports": "list of tables, at least one",
     "springs": "list of tables",
@@ -479,11 +546,13 @@ OTHERWISE = {
     ("mesh-file", "size"): "about 800 elements",
     ("mesh-file", "gap"): "1e-4 of the size of the drawing",
     ("polygon", "size"): "about 800 elements",
-    ("field", "flux_density"): "magnitude and direction",
+    ("field", "flux_density"): "magnitude and direction, or another field",
     ("field", "history"): keys.HISTORY.otherwise,
+    **{(name, "history"): keys.HISTORY.otherwise for name in ("source", "field-gradient", "field-sampled")},
     **{(name, key): a.otherwise for name, one in DESCRIBED.items() for key, a in one.keys.items() if a.otherwise},
     ("file", "field"): "none",
     ("file", "supports"): "**required**, unless springs hold the shell",
+    **{(name, "rotation_centre"): "its middle" for name in ("source", "field-gradient", "field-sampled")},
     **{("file", key): "**required**, unless layers or regions hold all" for key in ("shell", "material")},
     ("shell", "thickness"): "**required**, unless layers or regions hold all",
     **{
@@ -494,6 +563,7 @@ OTHERWISE = {
     ("file", "results"): "see below",
     ("file", "solver"): "see below",
 }
+OF_FIELDS = ("source", "field-gradient", "field-sampled", "field-coils")
 EXAMPLES = {
     "example-rectangle": "strip-10",
     "example-annulus": "slit-annulus",
@@ -522,10 +592,11 @@ def main() -> int:
 
 def pages() -> dict[pathlib.Path, dict[str, str]]:
     """The blocks of every page."""
-    made = {name: table(name) for name in TABLES}
+    made = {name: table(name) for name in TABLES if name not in OF_FIELDS}
     made |= {name: f"```toml\n{examples.text(problem)}```" for name, problem in EXAMPLES.items()}
     made["units"] = units_table()
-    return {PAGE: made, RESULTS: {"outputs": outputs_table()}, REACTIONS: {"series": series_table()}}
+    of_fields = {name: table(name) for name in OF_FIELDS} | {"magnets": shapes(MAGNETS), "coils": shapes(COILS)}
+    return {PAGE: made, FIELDS: of_fields, RESULTS: {"outputs": outputs_table()}, REACTIONS: {"series": series_table()}}
 
 
 def outputs_table() -> str:
@@ -556,6 +627,20 @@ def series_table() -> str:
     return "\n".join(rows)
 
 
+def shapes(kinds: Mapping[str, Kind]) -> str:
+    """Keys of magnets or coils."""
+    rows = ["| Shape | Key | Value | Default | Meaning |", "|---|---|---|---|---|"]
+    for shape, kind in kinds.items():
+        otherwise = keys.defaults(kind.make)
+        for number, (key, about) in enumerate(kind.keys.items()):
+            first = f'`"{shape}"`' if number == 0 else ""
+            left_out = about.otherwise or ("**required**" if key not in otherwise else written(otherwise[key]))
+            rows.append(
+                f"| {first} | `{key}` | {kind_of(getattr(fields, about.kind))} | {left_out} | {about.meaning} |"
+            )
+    return "\n".join(rows)
+
+
 def table(name: str) -> str:
     """Keys of a table of the schema."""
     cls, meanings = TABLES[name]
@@ -575,6 +660,8 @@ def kind_of(hint: Any) -> str:
         hint = Literal[tuple(ELEMENTS)]
     if hint == fields.Coupling:
         hint = Literal[tuple(COUPLINGS)]
+    if isinstance(hint, type) and issubclass(hint, schema.Table):
+        return "table"
     if get_origin(hint) is Literal:
         return " or ".join(f'`"{choice}"`' if isinstance(choice, str) else f"`{choice}`" for choice in get_args(hint))
     for known, words in KINDS.items():

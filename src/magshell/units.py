@@ -123,6 +123,15 @@ AREA_STIFFNESS = _dimension(
 )
 DENSITY = _dimension("density", {"kg/m^3": "1", "g/cm^3": "1e3"}, {"kg/m^3": 0.0})
 MASS = _dimension("mass", {"kg": "1", "g": "1e-3", "mg": "1e-6"}, {"kg": 1.0, "g": 1e-4, "mg": 0.0})
+CURRENT = _dimension("current", {"A": "1", "mA": "1e-3", "kA": "1e3"}, {"kA": 1e3, "A": 1.0, "mA": 0.0})
+MAGNETIC_MOMENT = _dimension(
+    "magnetic moment", {"A m^2": "1", "mA m^2": "1e-3", "emu": "1e-3"}, {"A m^2": 0.1, "mA m^2": 0.0}
+)
+FLUX_GRADIENT = _dimension(
+    "gradient of flux density",
+    {"T/m": "1", "mT/m": "1e-3", "mT/mm": "1", "G/cm": "1e-2"},
+    {"T/m": 0.1, "mT/m": 0.0},
+)
 NUMBER = Dimension("number without unit", {}, ())
 
 QUANTITIES = (
@@ -139,6 +148,9 @@ QUANTITIES = (
     LINE_STIFFNESS,
     AREA_STIFFNESS,
     DENSITY,
+    CURRENT,
+    MAGNETIC_MOMENT,
+    FLUX_GRADIENT,
 )
 """All kinds that have a unit."""
 

@@ -16,7 +16,7 @@ SOURCES = pathlib.Path(magshell.__file__).parent
 # Lowest first; a module belongs to the longest name that it begins with, "" is the package itself.
 LAYERS = (
     "version", "keys", "remembered", "nearest", "errors", "units", "wording", "arrays", "multipliers", "files",
-    "drawing", "kernel_cache", "compiled", "processes", "openblas", "mesh", "materials", "magnetics", "shell",
+    "tables", "drawing", "kernel_cache", "compiled", "processes", "openblas", "mesh", "materials", "magnetics", "shell",
     "magnetics.remanence", "model", "linalg", "equations", "evaluation", "solver", "output", "kernel_messages",
     "progress", "problem", "results", "sweep", "reproduction", "cli", "__main__", "",
 )  # fmt: skip

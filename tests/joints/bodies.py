@@ -9,7 +9,7 @@ from battery import COUPLING, FIELD, MATERIAL, REMANENCE, Unsupported, example
 
 from magshell.equations.discretisation import Discretisation
 from magshell.magnetics import remanence
-from magshell.magnetics.field import UniformField
+from magshell.magnetics.fields.uniform import UniformField
 from magshell.mesh import Mesh
 from magshell.model.hinge import Hinge
 from magshell.model.rigid_body import RigidBody

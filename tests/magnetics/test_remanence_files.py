@@ -11,7 +11,7 @@ import magshell as ms
 from magshell.errors import InputError
 from magshell.magnetics import remanence
 from magshell.magnetics.remanence.sampled import averaged
-from magshell.magnetics.remanence.tables import Columns, read_table
+from magshell.tables import Columns, read_table
 from magshell.units import FLUX_DENSITY, LENGTH
 
 STRIP = ms.mesh.rectangle(4e-3, 2e-3, (4, 2))

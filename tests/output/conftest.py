@@ -11,7 +11,7 @@ import pytest
 from magshell.evaluation.converged import Converged
 from magshell.evaluation.work import Work
 from magshell.magnetics import remanence
-from magshell.magnetics.field import UniformField
+from magshell.magnetics.fields.uniform import UniformField
 from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.materials import MicropolarNeoHookean
 from magshell.mesh import cylinder

@@ -14,7 +14,7 @@ from PIL import Image
 
 from magshell.errors import InputError
 from magshell.evaluation.converged import converged
-from magshell.magnetics.field import UniformField
+from magshell.magnetics.fields.uniform import UniformField
 from magshell.output import rendering
 from magshell.output.curve import curve_figure
 from magshell.output.pictures import draw_curve, draw_pictures, draw_shape

@@ -15,7 +15,7 @@ from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.drawing import drawing
 from magshell.errors import InputError, NothingLoads, suggest
 from magshell.magnetics.deformation_gradient_energy import DeformationGradientEnergy
-from magshell.magnetics.field import UniformField
+from magshell.magnetics.fields.uniform import UniformField
 from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.model import coupling_limit, doubts, symmetry
 from magshell.model.course import Amounts, Course, Loading
@@ -104,6 +104,11 @@ class Model:
     _ends: tuple[Amounts, ...] = dataclasses.field(init=False, repr=False)
 
     def __post_init__(self) -> None:
+        if not isinstance(self.field, UniformField):
+            raise InputError(
+                "field: it varies in space (magnets, coils, a gradient, a grid, a function), and the equations have no "
+                "forces of such a field yet; a model takes a UniformField"
+            )
         mesh = self.shell.mesh
         put = object.__setattr__
         if self.coupling is None:

@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
-from magshell.magnetics.field import UniformField
+from magshell.magnetics.fields.uniform import UniformField
 from magshell.mesh import Mesh
 from magshell.mesh.geometry import COINCIDENT
 from magshell.model.course import Course

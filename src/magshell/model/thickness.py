@@ -21,10 +21,10 @@ from magshell.errors import InputError
 from magshell.magnetics.remanence.files import PLACE, check_one_value_each, factor
 from magshell.magnetics.remanence.inside import find
 from magshell.magnetics.remanence.sampled import AS_NEAR
-from magshell.magnetics.remanence.tables import Columns, duplicate, read_table
 from magshell.mesh import Mesh
 from magshell.mesh.geometry import centres
 from magshell.remembered import remembered
+from magshell.tables import Columns, duplicate, read_table
 
 Thickness: TypeAlias = Callable[[Mesh, FloatArray], FloatArray]
 """From the mesh and points of each of its elements, (elements, points, 3) in m, to the thickness there, in m."""

@@ -187,6 +187,13 @@ def _outline(value: object) -> object:
     return value
 
 
+def _several_places(value: object) -> object:
+    if not isinstance(value, list | tuple) or len(value) < 3:
+        has = f"has {len(value)} entries" if isinstance(value, list | tuple) else "is not a list"
+        raise InputError(f"{has}; expected three or more, each with coordinates X1, X2, X3")
+    return value
+
+
 def not_empty(value: object) -> object:
     """A list or table that must hold something."""
     if value in ([], {}, ()):
@@ -230,6 +237,10 @@ Stress = Annotated[float, _quantity(units.STRESS)]
 Stiffness = Annotated[float, _positive_quantity(units.STIFFNESS)]
 LineStiffness = Annotated[float, _positive_quantity(units.LINE_STIFFNESS)]
 AreaStiffness = Annotated[float, _positive_quantity(units.AREA_STIFFNESS)]
+FluxGradient = Annotated[float, _quantity(units.FLUX_GRADIENT)]
+AnyCurrent = Annotated[float, _quantity(units.CURRENT)]
+Current = Annotated[float, _quantity(units.CURRENT), AfterValidator(_not_zero)]
+DipoleMoment = Annotated[float, _quantity(units.MAGNETIC_MOMENT)]
 Acceleration = Annotated[float, _quantity(units.ACCELERATION)]
 PositiveDensity = Annotated[float, _positive_quantity(units.DENSITY)]
 Angle = Annotated[float, _quantity(units.ANGLE)]
@@ -242,6 +253,7 @@ Name = Annotated[str, BeforeValidator(_text_like(_NAME, "letters, digits, spaces
 ProbeName = Annotated[str, BeforeValidator(_text_like(_PROBE_NAME, "letters, digits and _ - ' only"))]
 FileName = Annotated[str, BeforeValidator(_file_name)]
 LengthUnit = Annotated[str, _unit_of(units.LENGTH)]
+FluxDensityUnit = Annotated[str, _unit_of(units.FLUX_DENSITY)]
 RemanenceUnit = Annotated[str, _unit_of(units.REMANENCE)]
 Names = Annotated[tuple[Name, ...], BeforeValidator(_one_or_more)]
 
@@ -277,6 +289,28 @@ AccelerationVector = Annotated[
     tuple[Acceleration, Acceleration, Acceleration],
     _list_of(3, "components of the acceleration along X1, X2, X3"),
     AfterValidator(_nonzero),
+]
+GradientRow = Annotated[tuple[FluxGradient, FluxGradient, FluxGradient], _list_of(3, "derivatives along X1, X2, X3")]
+GradientTensor = Annotated[
+    tuple[GradientRow, GradientRow, GradientRow], _list_of(3, "rows, the gradients of B1, B2, B3")
+]
+Polarisation = Annotated[
+    tuple[Remanence, Remanence, Remanence],
+    _list_of(3, "components of the polarisation along the magnet's own axes"),
+    AfterValidator(_nonzero),
+]
+MagneticMoment = Annotated[
+    tuple[DipoleMoment, DipoleMoment, DipoleMoment],
+    _list_of(3, "components of the magnetic moment along the dipole's own axes"),
+    AfterValidator(_nonzero),
+]
+Sides = Annotated[tuple[PositiveLength, PositiveLength, PositiveLength], _list_of(3, "lengths along its own axes")]
+PlaneSides = Annotated[tuple[PositiveLength, PositiveLength], _list_of(2, "lengths along its first two axes")]
+Sector = Annotated[tuple[Angle, Angle], _list_of(2, "first and last angle")]
+Places = Annotated[tuple[Position, ...], BeforeValidator(_several_places)]
+Displacements = Annotated[tuple[Position, ...], BeforeValidator(_one_each("displacement"))]
+Currents = Annotated[
+    tuple[tuple[AnyCurrent, ...], ...], BeforeValidator(_one_each("list of currents, one of each coil,"))
 ]
 History = Annotated[tuple[Number, ...], BeforeValidator(_one_each("multiplier"))]
 Rotation = Annotated[tuple[Angle, ...], BeforeValidator(_one_each("angle"))]

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 MOST_ERRORS = 10
 MOST_BYTES = 16 * 2**20
-LISTS_OF_TABLES = ("supports", "loads", "remanence", "stages", "regions", "layers")
+LISTS_OF_TABLES = ("supports", "loads", "remanence", "stages", "regions", "layers", "magnets", "coils")
 
 
 class Source(NamedTuple):
@@ -245,6 +245,7 @@ def _pattern(where: Sequence[str | int]) -> str:
 
 def _kinds(place: str) -> list[str]:
     """What the key that chooses the kind of a table at this place may say."""
+    from magshell.magnetics.fields import COILS, MAGNETS
     from magshell.magnetics.remanence import REMANENCES
     from magshell.materials import MATERIALS, names_of
     from magshell.model.loads import LOADS
@@ -263,6 +264,8 @@ def _kinds(place: str) -> list[str]:
         "supports": SUPPORTS,
         "springs": SPRINGS,
         "loads": LOADS,
+        "magnets": MAGNETS,
+        "coils": COILS,
     }
     return list(registries[table])
 

@@ -26,6 +26,7 @@ from magshell.problem import (
     region_report,
     remanence_report,
     schema,
+    source_report,
     symmetry_report,
 )
 from magshell.problem.building import Problem
@@ -68,7 +69,7 @@ def describe(problem: Problem) -> Report:
             **({"Regions": list(region_report.lines(problem))} if several else {}),
             **({} if several else {"Material": list(_material(problem, figures.parts[0]))}),
             "Remanence": list(_remanence(problem, figures)),
-            "Field": list(_field(problem, figures)),
+            "Field": [*_field(problem, figures), *source_report.lines(problem.file)],
             **({"Loads": list(load_report.lines(problem, strong))} if problem.file.loads else {}),
             **({"Supports": list(_supports(problem, figures))} if problem.model.supports else {}),
             **({"Springs": list(_springs(problem, figures))} if problem.model.springs else {}),

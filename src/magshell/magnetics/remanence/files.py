@@ -16,10 +16,10 @@ from magshell.errors import InputError, suggest
 from magshell.keys import Key
 from magshell.magnetics.remanence.deformed import Deformed
 from magshell.magnetics.remanence.sampled import at_places, per_element
-from magshell.magnetics.remanence.tables import LARGEST, Columns, Table, duplicate, read_table, unreadable
 from magshell.magnetics.remanence.template import Placed, in_template
 from magshell.magnetics.remanence.vectors import Remanence
 from magshell.magnetics.remanence.way import Way
+from magshell.tables import LARGEST, Columns, Table, duplicate, read_table, unreadable
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh
@@ -43,7 +43,7 @@ def from_file(
     file : path
         A CSV file whose first line names the columns `b1,b2,b3`, and `x1,x2,x3` where the rows are places (see
         `at_places`); without them it has one row per element, in the order of the mesh. Other columns are passed over.
-        Semicolons, tabs, decimal commas and units in headings are read (`magshell.magnetics.remanence.tables`).
+        Semicolons, tabs, decimal commas and units in headings are read (`magshell.tables`).
         Or a `.npy` file: an array (elements, 3).
     flux_density_unit : str
         Of its vectors.

@@ -10,10 +10,10 @@ from numpy.typing import ArrayLike
 
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.errors import InputError
-from magshell.magnetics.remanence.tables import duplicate
 from magshell.magnetics.remanence.vectors import Remanence
 from magshell.mesh.geometry import centres
 from magshell.remembered import remembered
+from magshell.tables import duplicate
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh

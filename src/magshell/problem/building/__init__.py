@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from magshell.drawing import drawing
 from magshell.evaluation.outputs import chosen
 from magshell.linalg import make_solver
-from magshell.magnetics import COUPLINGS, UniformField
+from magshell.magnetics import COUPLINGS
 from magshell.mesh import Mesh
 from magshell.model.loads import LOADS, Load
 from magshell.model.model import Model
@@ -18,6 +18,7 @@ from magshell.model.springs import SPRINGS, Spring
 from magshell.model.stages import Stage
 from magshell.model.supports import SUPPORTS, Support
 from magshell.problem import schema
+from magshell.problem.building.field import build_field
 from magshell.problem.building.located import at
 from magshell.problem.building.material import EARLIER
 from magshell.problem.building.mesh import build_mesh
@@ -84,7 +85,7 @@ def build(file: ProblemFile, source: str, text: str = "", folder: pathlib.Path =
     with at(source):
         mesh = build_mesh(file.mesh, folder)
         shell = build_shell(file, mesh, folder)
-        field = _field(file.field)
+        field = build_field(file, folder)
         supports = _supports(file.supports, mesh)
         springs = _springs(file.springs, mesh)
         loads = _loads(file.loads, shell)
@@ -94,7 +95,7 @@ def build(file: ProblemFile, source: str, text: str = "", folder: pathlib.Path =
         model = Model(
             shell,
             supports=supports,
-            field=field,
+            field=field,  # type: ignore[arg-type]  # the model refuses what its equations do not have
             coupling=COUPLINGS[file.field.coupling](),
             probes=file.probes,
             loads=loads,
@@ -116,10 +117,6 @@ def with_earlier_defaults(problem: Problem) -> Problem:
     given = {key: multiple for key, multiple in EARLIER.items() if getattr(material, key) is None}
     file = problem.file.model_copy(update={"material": material.model_copy(update=given)})
     return build(file, problem.source, problem.text, problem.folder)
-
-
-def _field(table: schema.FieldTable) -> UniformField:
-    return UniformField(table.vector, table.stops, table.history, table.rotation_axis, table.rotation)
 
 
 def _stages(tables: tuple[schema.StageTable, ...]) -> list[Stage]:

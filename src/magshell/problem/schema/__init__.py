@@ -12,6 +12,7 @@ from typing import Annotated, Any, ClassVar, Union, get_args
 
 from pydantic import BeforeValidator, Field, create_model, model_validator
 
+from magshell.magnetics.fields import COILS, MAGNETS
 from magshell.magnetics.remanence import REMANENCES
 from magshell.materials import MATERIALS, keys_of, names_of
 from magshell.model.loads import LOADS
@@ -44,22 +45,36 @@ from magshell.problem.schema.region import LayerTable, RegionTable, ThicknessFil
 from magshell.problem.schema.remanence import FoldTable, RemanenceTable
 from magshell.problem.schema.shell import ShellTable
 from magshell.problem.schema.solving import ResultsTable, SolverTable, StageTable
+from magshell.problem.schema.sources import (
+    CoilSystemTable,
+    CoilTable,
+    GradientTable,
+    MagnetTable,
+    MotionTable,
+    SampledTable,
+    SourceTable,
+)
 from magshell.problem.schema.table import Table, key_error
 
 __all__ = [
     "Annulus",
     "Block",
     "Blocks",
+    "CoilSystemTable",
+    "CoilTable",
     "Cylinder",
     "Elements",
     "FieldTable",
     "FoldTable",
+    "GradientTable",
     "LayerTable",
     "LoadTable",
+    "MagnetTable",
     "MaterialTable",
     "Mesh",
     "MeshFile",
     "Miura",
+    "MotionTable",
     "Polygon",
     "ProblemFile",
     "Profile",
@@ -68,9 +83,11 @@ __all__ = [
     "RemanenceTable",
     "ResultsTable",
     "Round",
+    "SampledTable",
     "Selection",
     "ShellTable",
     "SolverTable",
+    "SourceTable",
     "Sphere",
     "SpherePatch",
     "SpringTable",
@@ -80,7 +97,9 @@ __all__ = [
     "ThicknessFile",
     "ThicknessProfile",
     "Wall",
+    "coil_tables",
     "load_tables",
+    "magnet_tables",
     "material_tables",
     "problem_file",
     "remanence_tables",
@@ -98,6 +117,8 @@ class ProblemFile(Table):
         "supports[]": "kind",
         "springs[]": "kind",
         "loads[]": "kind",
+        "magnets[]": "shape",
+        "coils[]": "shape",
         "material": "law",
         "remanence[]": "kind",
         **{f"{place}thickness": "" for place in ("shell.", "shell.layers[].", "regions[].", "regions[].layers[].")},
@@ -116,6 +137,8 @@ class ProblemFile(Table):
     regions: tuple[RegionTable, ...] = ()
     remanence: tuple[RemanenceTable, ...] = ()
     field: FieldTable = FieldTable(flux_density=(0.0, 0.0, 0.0))
+    magnets: tuple[MagnetTable, ...] = ()
+    coils: tuple[CoilTable, ...] = ()
     loads: tuple[LoadTable, ...] = ()
     supports: tuple[SupportTable, ...] = ()
     springs: tuple[SpringTable, ...] = ()
@@ -128,6 +151,15 @@ class ProblemFile(Table):
     def _is_held(self) -> ProblemFile:
         if not self.supports and not self.springs:
             raise key_error("supports", "is missing")
+        return self
+
+    @model_validator(mode="after")
+    def _field_is_of_something(self) -> ProblemFile:
+        field = self.field
+        if "field" not in self.model_fields_set or "flux_density" in field.model_fields_set or field.varies:
+            return self
+        if not (self.magnets or self.coils):
+            raise key_error("field.flux_density", "is missing")
         return self
 
     @model_validator(mode="after")
@@ -176,15 +208,27 @@ def spring_tables() -> dict[str, type[Table]]:
     return {name: table_of("kind", (name,), one, one.keys, SpringTable) for name, one in SPRINGS.items()}
 
 
+def magnet_tables() -> dict[str, type[Table]]:
+    """The tables of all magnets, by shape."""
+    return {name: table_of("shape", (name,), one.make, one.keys, MagnetTable) for name, one in MAGNETS.items()}
+
+
+def coil_tables() -> dict[str, type[Table]]:
+    """The tables of all coils, by shape."""
+    return {name: table_of("shape", (name,), one.make, one.keys, CoilTable) for name, one in COILS.items()}
+
+
 def problem_file() -> type[ProblemFile]:
     """The model of a file, with all that is registered now."""
-    return _problem_file(*(tuple(registry.items()) for registry in (MATERIALS, REMANENCES, LOADS, SUPPORTS, SPRINGS)))
+    registries = (MATERIALS, REMANENCES, LOADS, SUPPORTS, SPRINGS, MAGNETS, COILS)
+    return _problem_file(*(tuple(registry.items()) for registry in registries))
 
 
 @lru_cache(maxsize=1)
 def _problem_file(*registered: tuple[tuple[str, Any], ...]) -> type[ProblemFile]:
     laws, ways, loads = material_tables(), remanence_tables(), load_tables()
     supports, springs = support_tables(), spring_tables()
+    magnets, coils = magnet_tables(), coil_tables()
     law, magnetised = _one_of(laws, "law"), _list_of(_one_of(ways, "kind"))
     layer = create_model("LayerTable", __base__=LayerTable, material=(law, ...), remanence=(magnetised, ()))
     layers: dict[str, Any] = {"layers": (_list_of(layer), ())}
@@ -199,11 +243,15 @@ def _problem_file(*registered: tuple[tuple[str, Any], ...]) -> type[ProblemFile]
         "remanence": (magnetised, ()),
         "loads": (_list_of(_one_of(loads, "kind")), ()),
         "supports": (Annotated[_list_of(_one_of(supports, "kind")), BeforeValidator(f.not_empty)], ()),
+        "magnets": (_list_of(_one_of(magnets, "shape")), ()),
+        "coils": (_list_of(_one_of(coils, "shape")), ()),
         "springs": (_list_of(_one_of(springs, "kind")), ()),
     }
     made = create_model("ProblemFile", __base__=ProblemFile, **entries)
     tables: tuple[type[Table], ...] = (made, shell, region, layer)
-    tables += tuple(table for kinds in (laws, ways, loads, supports, springs) for table in kinds.values())
+    tables += tuple(
+        table for kinds in (laws, ways, loads, supports, springs, magnets, coils) for table in kinds.values()
+    )
     made.classes = {table.__name__: table for table in tables}
     for table in tables:  # pickle finds classes in modules only
         setattr(table, "__reduce__", _pickled)  # noqa: B010

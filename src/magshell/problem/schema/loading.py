@@ -8,6 +8,7 @@ from pydantic import model_validator
 
 from magshell.magnetics.remanence.vectors import given_once
 from magshell.problem import fields as f
+from magshell.problem.schema.sources import CoilSystemTable, GradientTable, SampledTable
 from magshell.problem.schema.table import Table, key_error
 
 
@@ -22,19 +23,28 @@ class FieldTable(Table):
     rotation: f.Rotation | None = None
     stops: tuple[f.PositiveFluxDensity, ...] = ()
     coupling: f.Coupling = "couple"
+    gradient: GradientTable | None = None
+    sampled: SampledTable | None = None
+    coils: CoilSystemTable | None = None
+    spline_spacing: f.PositiveLength | None = None
+
+    @property
+    def varies(self) -> bool:
+        """Whether there is more than the uniform part."""
+        return any(part is not None for part in (self.gradient, self.sampled, self.coils))
 
     @property
     def vector(self) -> tuple[float, float, float]:
         """The flux density at multiplier 1, T, however it is given."""
-        if self.flux_density is not None:
-            return self.flux_density
-        assert self.magnitude is not None
-        assert self.direction is not None
+        if self.magnitude is None or self.direction is None:
+            return self.flux_density or (0.0, 0.0, 0.0)
         x1, x2, x3 = (self.magnitude * component / math.hypot(*self.direction) for component in self.direction)
         return x1, x2, x3
 
     @model_validator(mode="after")
     def _is_given_once(self) -> FieldTable:
+        if self.varies and not {"flux_density", "magnitude", "direction"} & self.model_fields_set:
+            return self
         fault = given_once("flux_density", self.flux_density, self.magnitude, self.direction)
         if fault is not None:
             raise key_error(*fault)

@@ -1,4 +1,8 @@
-"""The external magnetic field."""
+"""A field that is the same everywhere.
+
+Its amounts are the multiplier h and the angle α about the axis a: B = h R(α) B0, and along the path
+B' = h' R(α) B0 + α' a × B.
+"""
 
 from __future__ import annotations
 
@@ -11,11 +15,12 @@ from numpy.typing import ArrayLike
 
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
-from magshell.multipliers import numbers
+from magshell.magnetics.fields.field import Field, Values
+from magshell.multipliers import amplitudes, numbers
 
 
 @dataclass(frozen=True, eq=False)
-class UniformField:
+class UniformField(Field):
     """External flux density, the same everywhere.
 
     Parameters
@@ -45,6 +50,9 @@ class UniformField:
     rotation: Sequence[float] | None = None
     vector: FloatArray = field(init=False, repr=False)
     axis: FloatArray = field(init=False, repr=False)
+    name = "field"
+    drives = ("field.multiplier", "field.angle")
+    is_uniform = True
 
     def __post_init__(self) -> None:
         try:
@@ -96,3 +104,31 @@ class UniformField:
         """Of the vector: along the axis, across it, and their normal."""
         along = (self.vector @ self.axis) * self.axis
         return along, self.vector - along, np.cross(self.axis, self.vector)
+
+    @property
+    def stages(self) -> int:
+        return max((len(one) for one in (self.history, self.rotation) if one is not None), default=1)
+
+    def ends(self, stages: int) -> FloatArray:
+        amounts = np.zeros((stages + 1, 2))
+        amounts[1:, 0] = amplitudes(self.history, stages, "field")
+        if self.rotation is not None:
+            amounts[1:, 1] = amplitudes(self.rotation, stages, "field: rotation")
+        return amounts
+
+    def at(self, amounts: FloatArray, points: FloatArray, second: bool = True) -> Values:
+        return _everywhere(amounts[0] * self.turned(amounts[1]), len(points), second)
+
+    def rate(self, amounts: FloatArray, change: FloatArray, points: FloatArray) -> Values:
+        direction = self.turned(amounts[1])
+        turning = amounts[0] * change[1] * np.cross(self.axis, direction)
+        return _everywhere(change[0] * direction + turning, len(points), False)
+
+
+def _everywhere(flux_density: FloatArray, count: int, second: bool) -> Values:
+    """The same at all points, without memory for each."""
+
+    def zero(*shape: int) -> FloatArray:
+        return np.broadcast_to(0.0, (count, *shape))
+
+    return Values(np.broadcast_to(flux_density, (count, 3)), zero(3, 3), zero(3, 3, 3) if second else None)

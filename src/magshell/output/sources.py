@@ -1,0 +1,192 @@
+"""Magnets and coils to scale where they are for given amounts, and a field on a plane as arrows or lines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from magshell.arrays import FloatArray
+from magshell.errors import InputError
+from magshell.magnetics.fields import Field, FieldUnknown, MagnetField, Source
+from magshell.mesh.geometry import unit
+from magshell.output.style import COLOURS
+
+NORTH, SOUTH, COPPER = COLOURS[1], COLOURS[0], "#b87333"
+GAP = 0.62
+"""Length of an arrow over the distance between two."""
+
+
+class Piece(NamedTuple):
+    """A surface of one colour.
+
+    Attributes
+    ----------
+    surface : pyvista.PolyData
+        In its place, m.
+    colour : str
+        Of the half at the north pole, the half at the south pole, or a coil.
+    name : str
+        Of the field that it belongs to.
+    """
+
+    surface: Any
+    colour: str
+    name: str
+
+
+def pieces(field: Field, amounts: FloatArray) -> list[Piece]:
+    """The surfaces of all magnets and coils of a field for given amounts; magnets are cut between their poles."""
+    return [
+        piece
+        for part, own in field.parts(amounts)
+        if isinstance(part, MagnetField)
+        for source in part.now(own)
+        for piece in _of_source(source, part.name)
+    ]
+
+
+def _of_source(source: Source, name: str) -> Iterator[Piece]:
+    surface, poles = source.shape.surface(), source.shape.poles
+    place = np.eye(4)
+    place[:3, :3], place[:3, 3] = source.turn, source.place
+    if poles is None:
+        yield Piece(surface.transform(place, inplace=False), COPPER, name)
+        return
+    middle = np.asarray(surface.center)
+    for colour, invert in ((NORTH, False), (SOUTH, True)):
+        half = surface.clip(normal=poles, origin=middle, invert=invert)
+        yield Piece(half.extract_surface(algorithm="dataset_surface").transform(place, inplace=False), colour, name)
+
+
+def place(plotter: Any, field: Field, amounts: FloatArray) -> None:
+    """Add the magnets and coils of a field to a plotter."""
+    for piece in pieces(field, amounts):
+        plotter.add_mesh(piece.surface, color=piece.colour, ambient=0.55, specular=0.15)
+
+
+@dataclass(frozen=True, eq=False)
+class Plane:
+    """A rectangle on which a field is drawn.
+
+    Parameters
+    ----------
+    corner : array_like, shape (3,)
+        m.
+    first, second : array_like, shape (3,)
+        Its sides, at right angles to each other, m.
+    points : int
+        Along its longer side.
+
+    Raises
+    ------
+    InputError
+        Sides without length, or not at right angles.
+    """
+
+    corner: ArrayLike
+    first: ArrayLike
+    second: ArrayLike
+    points: int = 40
+
+    def __post_init__(self) -> None:
+        sides = self.sides
+        lengths = np.linalg.norm(sides, axis=1)
+        if not np.isfinite(sides).all() or not lengths.all():
+            raise InputError("plane: its sides must be finite and have a length")
+        if abs(sides[0] @ sides[1]) > 1e-6 * lengths[0] * lengths[1]:
+            raise InputError("plane: its sides must be at right angles to each other")
+        if self.points < 2:
+            raise InputError(f"plane: points is {self.points}; it needs at least 2 along a side")
+
+    @property
+    def sides(self) -> FloatArray:
+        """Both sides (2, 3)."""
+        return np.array([self.first, self.second], dtype=float)
+
+    @property
+    def counts(self) -> tuple[int, int]:
+        """Number of points along each side."""
+        lengths = np.linalg.norm(self.sides, axis=1)
+        one, other = (max(2, round(self.points * length / lengths.max())) for length in lengths)
+        return one, other
+
+    def grid(self) -> FloatArray:
+        """The points (n1 n2, 3), the first side fastest."""
+        one, other = (np.linspace(0.0, 1.0, count) for count in self.counts)
+        shares = np.stack([np.tile(one, len(other)), np.repeat(other, len(one))], axis=1)
+        return np.asarray(np.asarray(self.corner, dtype=float) + shares @ self.sides)
+
+
+def known(field: Field, amounts: FloatArray, points: FloatArray) -> FloatArray:
+    """B (n, 3) at points (n, 3); NaN where the field is not known, on wires or outside grids."""
+    try:
+        return field.at(amounts, points, second=False).flux_density
+    except FieldUnknown:
+        if len(points) == 1:
+            return np.full((1, 3), np.nan)
+        half = len(points) // 2
+        return np.concatenate([known(field, amounts, part) for part in (points[:half], points[half:])])
+
+
+def arrows(field: Field, amounts: FloatArray, plane: Plane) -> Any:
+    """Arrows of equal length along B at the points of a plane, with the point array `B` (its magnitude, T).
+
+    Returns
+    -------
+    pyvista.PolyData
+    """
+    import pyvista
+
+    points = plane.grid()
+    B = known(field, amounts, points)
+    points, B = points[np.isfinite(B[:, 0])], B[np.isfinite(B[:, 0])]
+    cloud = pyvista.PolyData(points)
+    cloud["direction"], cloud["B"] = unit(B), np.linalg.norm(B, axis=1)
+    lengths = np.linalg.norm(plane.sides, axis=1)
+    length = GAP * min(side / (count - 1) for side, count in zip(lengths, plane.counts, strict=True))
+    arrow = pyvista.Arrow(start=(-0.5, 0.0, 0.0), tip_length=0.35, tip_radius=0.14, shaft_radius=0.045)
+    return cloud.glyph(orient="direction", scale=False, factor=length, geom=arrow)
+
+
+def streamlines(field: Field, amounts: FloatArray, plane: Plane, density: float = 1.5) -> Any:
+    """Lines along the part of B that lies in a plane, with the point array `B`, the magnitude of all of B, T.
+
+    Parameters
+    ----------
+    density : float
+        Of lines; 1 leaves about 1/30 of the longer side between them.
+
+    Returns
+    -------
+    pyvista.PolyData
+    """
+    import pyvista
+    from matplotlib.figure import Figure
+
+    lengths = np.linalg.norm(plane.sides, axis=1)
+    axes = plane.sides / lengths[:, None]
+    B = known(field, amounts, plane.grid())
+    one, other = (np.linspace(0.0, length, count) for length, count in zip(lengths, plane.counts, strict=True))
+    along = unit(B @ axes.T).reshape(len(other), len(one), 2)
+    drawn = (
+        Figure()
+        .subplots()
+        .streamplot(
+            one, other, along[..., 0], along[..., 1], density=tuple(density * lengths / lengths.max()), minlength=0.05
+        )
+    )
+    paths = drawn.lines.get_segments()
+    points = np.asarray(plane.corner, dtype=float) + np.concatenate([np.zeros((0, 2)), *paths]) @ axes
+    starts = np.cumsum([0, *map(len, paths)])
+    lines = [
+        number
+        for path, start in zip(paths, starts, strict=False)
+        for number in (len(path), *range(start, start + len(path)))
+    ]
+    found = pyvista.PolyData(points, lines=np.array(lines, dtype=int))
+    found["B"] = np.linalg.norm(known(field, amounts, points), axis=1)
+    return found

@@ -1,0 +1,54 @@
+"""Magnets, coils and other fields that vary in space, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from magshell.problem import schema
+from magshell.problem.building.field import placed
+from magshell.units import ANGLE, FLUX_GRADIENT, LENGTH, show
+from magshell.wording import quantity, vector
+
+
+def lines(file: schema.ProblemFile) -> Iterator[tuple[str, str]]:
+    """Label and text of every source, gradient, grid and coil system."""
+    for key, entries in (("magnets", file.magnets), ("coils", file.coils)):
+        for number, entry in enumerate(entries):
+            yield f"{key}[{number}]" + (f" {entry.name}" if entry.name else ""), _source(entry, key)
+    field = file.field
+    if field.gradient is not None:
+        rows = "; ".join(quantity(row, FLUX_GRADIENT) for row in field.gradient.tensor)
+        yield "gradient", f"{rows} about {quantity(field.gradient.centre, LENGTH)}{_motion(field.gradient)}"
+    if field.sampled is not None:
+        yield "sampled", f"from {field.sampled.file}{_motion(field.sampled)}"
+    if field.coils is not None:
+        count = len(field.coils.currents[0])
+        yield "coil system", f"{count} coils calibrated by {field.coils.calibration}"
+    if field.spline_spacing is not None:
+        yield "splines", f"spacing {show(field.spline_spacing, LENGTH)}"
+
+
+def _source(entry: schema.SourceTable, key: str) -> str:
+    sources = placed(entry, key)
+    first = sources[0].shape.words()
+    what = first if len(sources) == 1 else f"{entry.shape} of {len(sources)}, each a {first}"
+    turned = ""
+    if entry.orientation_axis is not None and entry.orientation:
+        turned = f", turned by {show(entry.orientation, ANGLE)} about {vector(entry.orientation_axis)}"
+    return f"{what}, at {quantity(entry.position, LENGTH)}{turned}{_motion(entry)}"
+
+
+def _motion(entry: schema.MotionTable) -> str:
+    """How it moves, in words; empty for what stays."""
+    parts = []
+    if entry.history is not None:
+        parts.append("multiplier " + ", ".join(f"{multiplier:.4g}" for multiplier in entry.history))
+    if entry.displacement is not None and np.any(entry.displacement):
+        parts.append("displaced by " + ", ".join(quantity(place, LENGTH) for place in entry.displacement))
+    if entry.rotation is not None and entry.rotation_axis is not None:
+        angles = ", ".join(show(angle, ANGLE) for angle in entry.rotation)
+        centre = "" if entry.rotation_centre is None else f" through {quantity(entry.rotation_centre, LENGTH)}"
+        parts.append(f"turns by {angles} about {vector(entry.rotation_axis)}{centre}")
+    return "".join(f"; {part}" for part in parts)
