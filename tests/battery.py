@@ -192,7 +192,8 @@ class Unsupported:
 
     def loading(self, load_factor):
         held = load_factor * self.constraints.values[0]
-        return Loading(load_factor * self.field.vector, np.full(len(self.loads), load_factor), held)
+        drives = np.array([load_factor, 0.0])
+        return Loading(load_factor * self.field.vector, np.full(len(self.loads), load_factor), held, drives)
 
     @cached_property
     def normals(self):

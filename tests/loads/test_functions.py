@@ -8,7 +8,7 @@ from battery import TYPES, each_element, for_element, patch
 
 from loads.cases import MESHES, shell_of
 from magshell.model.loads.distribution import nodal_areas
-from magshell.model.loads.functions import loaded
+from magshell.shell.loaded import loaded
 from magshell.shell.shape_functions import NODES
 from magshell.shell.triangle import REPEATED
 

@@ -10,8 +10,8 @@ import magshell as ms
 from loads.cases import applied, at_rest, crumpled, each_patch, moved, product, shell_of
 from magshell.mesh import Mesh
 from magshell.mesh.edges import find_edges
-from magshell.model.loads.functions import loaded
 from magshell.shell.elements import QUADRATIC
+from magshell.shell.loaded import loaded
 from magshell.shell.shape_functions import gauss_legendre
 from magshell.shell.unknowns import COMPONENTS
 

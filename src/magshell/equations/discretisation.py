@@ -21,7 +21,6 @@ from magshell.equations.shell import ShellTerm
 from magshell.equations.springs import SpringTerm
 from magshell.equations.term import Term, squares_by_kind
 from magshell.model.course import Loading
-from magshell.model.dipole import dipoles_of
 from magshell.model.hinge_springs import hinge_springs
 from magshell.model.model import Model
 from magshell.model.reference import make_of, reference_of_model, stiffest_of
@@ -96,14 +95,14 @@ class Discretisation:
         make = make_of(model)
         self.reference, self.materials = reference_of_model(model, make), make.materials
         self.couplings = make.couplings
-        self.shell = ShellTerm(self.reference, len(self.rows.of), stiffest_of(make))
+        self.shell = ShellTerm(self.reference, len(self.rows.of), stiffest_of(make), model.field)
         self.loads = LoadTerm(model.applied, model.constraints)
         self.springs = SpringTerm(model.elastic, model.constraints)
-        hinges, dipoles = hinge_springs(model.shell, self.rows), dipoles_of(model.shell)
+        hinges = hinge_springs(model.shell, self.rows)
         self.hinges = SpringTerm(hinges, model.constraints)
-        self.dipoles = DipoleTerm(dipoles, model.constraints)
+        self.dipoles = DipoleTerm(model.shell, self.rows, model.field, model.constraints)
         nodal = (self.loads, self.springs, self.hinges, self.dipoles)
-        users = (model.applied, model.elastic, hinges, dipoles)
+        users = (model.applied, model.elastic, hinges, self.dipoles.present)
         self._nodal = [term for term, some in zip(nodal, users, strict=True) if some]
         self.terms: Sequence[Term] = (self.shell, *self._nodal)
         self.carried = self.rows.carried
@@ -144,6 +143,8 @@ class Discretisation:
         ------
         InvertedElement
             det F is not positive at a point of an element.
+        FieldLost
+            The field is not known at a point of an element.
         """
         insertion = self._insertion if tangent else None
         if insertion is not None:

@@ -10,18 +10,21 @@ from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.equations.frames import to_frames, to_global
 from magshell.equations.insertion import Insertion, destination, summed
 from magshell.equations.instant import STATIC, Increment, Instant, Prediction, Weights
+from magshell.equations.local_field import FieldAtLevels
 from magshell.equations.numbering import Numbering
 from magshell.equations.scatter import Destination, Elements, add_matrices, turn_matrices
 from magshell.equations.term import Contribution, InvertedElement
+from magshell.magnetics.fields import Field, UniformField
 from magshell.model.course import Loading
 from magshell.model.supports import Constraints
 from magshell.shell import loops
 from magshell.shell.body import Reference
 from magshell.shell.element import padded
 from magshell.shell.geometry import unit_forces
-from magshell.shell.section import Request
+from magshell.shell.section import LocalField, Request
 from magshell.shell.unknowns import COLUMNS, COMPONENTS
 
+NO_FIELD = UniformField((0.0, 0.0, 0.0))
 ROUND_OFF = 8.0 * np.finfo(float).eps
 # Elements whose matrices are made before they are inserted: they stay in the processor's cache.
 BATCH = 32
@@ -40,10 +43,13 @@ class ShellTerm:
         Of the mesh.
     stiffest : ndarray, shape (elements, levels)
         Largest modulus of the material, Pa.
+    field : Field, optional
+        By default none.
     """
 
-    def __init__(self, reference: Reference, nodes: int, stiffest: FloatArray) -> None:
+    def __init__(self, reference: Reference, nodes: int, stiffest: FloatArray, field: Field = NO_FIELD) -> None:
         self.body, self._nodes = reference.body, nodes
+        self.field = FieldAtLevels(field, reference)
         layout, count = self.body.layout, len(self.body.elements)
         carrying = [layout.u] * 3 + [layout.w] * 3 + [layout.phi] + [layout.q] * 3 + [layout.s]
         node = np.concatenate([np.arange(number) for number in carrying])
@@ -77,10 +83,22 @@ class ShellTerm:
         self, instant: Instant, weights: Weights, insertion: Insertion | None, imposed: FloatArray | None
     ) -> Contribution:
         """See `Term`."""
+        field = self.field.at(instant.state, instant.loading, second=insertion is not None)
+        return self._evaluate(instant, field, weights, insertion, imposed)
+
+    def _evaluate(
+        self,
+        instant: Instant,
+        field: LocalField,
+        weights: Weights,
+        insertion: Insertion | None,
+        imposed: FloatArray | None,
+    ) -> Contribution:
+        """The same in a given field."""
         filled, tangent = self._filled, insertion is not None
         filled.scale[:], filled.enhancement_residual[:] = 0.0, 0.0
         mixed = instant.prediction is not None
-        request = Request(instant.loading.flux_density, mixed, tangent)
+        request = Request(field, mixed, tangent)
         stresses = self._unstressed if instant.prediction is None else instant.prediction
         for first in range(0, len(self.body.elements), len(filled.K)):
             element, determinant = loops.fill(
@@ -121,13 +139,18 @@ class ShellTerm:
         return self._filled.energy.copy()
 
     def load_rate(self, instant: Instant, rate: Loading) -> FloatArray:
-        """See `Term`. Residuals are linear in the flux density, unless levels have stretches that follow it."""
-        if not np.any(rate.flux_density):
+        """See `Term`. Residuals are linear in the field, unless levels have stretches that follow it."""
+        if not np.any(rate.drives):
             return np.zeros((self._nodes, COMPONENTS))
-        loading, change = instant.loading, np.zeros((self._nodes, COMPONENTS))
+        still, change = Instant(instant.state, instant.loading), np.zeros((self._nodes, COMPONENTS))
+        now = self.field.at(instant.state, instant.loading, second=False)
+        along = self.field.rate(instant.state, instant.loading, rate)
         for step, weight in FORWARD if self.body.by_level is None else CENTRAL:
-            there = loading._replace(flux_density=loading.flux_density + step * rate.flux_density)
-            change += weight * self.evaluate(Instant(instant.state, there), STATIC, None, None).residual
+            there = LocalField(
+                now.flux_density + step * along.flux_density,
+                None if now.slopes is None or along.slopes is None else now.slopes + step * along.slopes,
+            )
+            change += weight * self._evaluate(still, there, STATIC, None, None).residual
         return change
 
     def predict(self, instant: Instant, increment: Increment) -> Prediction:
@@ -135,9 +158,15 @@ class ShellTerm:
         shape = self.body.levels.shape
         stresses = loops.Stresses(np.zeros((*shape, 3, 3)), np.zeros((*shape[:2], 2, 3)))
         loops.predict_stresses(
-            self.body, instant.state, instant.loading.flux_density, increment.nodal, increment.alpha, stresses
+            self.body, instant.state, self._seen(instant), increment.nodal, increment.alpha, stresses
         )
         return stresses
+
+    def _seen(self, instant: Instant) -> FloatArray:
+        """Flux density (elements, p, k, 3) that stretches of levels follow; anything where there are none."""
+        if self.body.by_level is None:
+            return np.zeros((1, *self.body.levels.shape[1:], 3))
+        return self.field.at(instant.state, instant.loading, second=False).flux_density
 
     def recovered(self, nodal: FloatArray, whole: bool) -> FloatArray:
         """See `Term`. Δα = -offset - gain Δv."""

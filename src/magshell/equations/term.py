@@ -60,7 +60,7 @@ class Term(Protocol):
 
         Raises
         ------
-        InvertedElement
+        InvertedElement, FieldLost
         """
 
     def load_rate(self, instant: Instant, rate: Loading) -> FloatArray:
@@ -83,6 +83,14 @@ def squares_by_kind(nodal: FloatArray) -> FloatArray:
     """Sums of squares (5,) of the columns (nodes, 11) of u, w, φ, ω and s."""
     starts = [columns.start for columns in COLUMNS.values()]
     return np.add.reduceat(np.einsum("nc,nc->c", nodal, nodal), starts)
+
+
+class FieldLost(ArithmeticError):
+    """A trial state has an element where the field is not known."""
+
+    def __init__(self, element: int, why: str) -> None:
+        super().__init__(element, why)
+        self.element, self.why = element, why
 
 
 class InvertedElement(ArithmeticError):

@@ -1,8 +1,8 @@
 """Global equilibrium of a converged state: reactions of the supports against the loads and the field's total torque.
 
-The forces and couples that supports and loads exert, taken at the deformed nodes, must balance: forces sum to zero (a
-uniform field exerts none), moments to minus the magnetic torque, which is integrated here independently of the
-element kernels, from the point values of F and R̃.
+The forces and couples that supports and loads exert, taken at the deformed nodes, must balance those of the field,
+which are integrated here independently of the element kernels, from the point values of F and R̃. (A uniform field
+exerts no force.)
 """
 
 from __future__ import annotations
@@ -17,8 +17,11 @@ from magshell.equations.discretisation import Discretisation
 from magshell.evaluation import points
 from magshell.evaluation.points import evaluate, level_stretch, of_couplings
 from magshell.evaluation.reactions import held_forces
+from magshell.magnetics.law import X
 from magshell.model.course import Loading
+from magshell.shell.positions import level_positions
 from magshell.shell.rotation import cross
+from magshell.shell.section import LocalField
 from magshell.shell.state import State
 from magshell.shell.unknowns import COLUMNS
 
@@ -33,7 +36,7 @@ class Balance(NamedTuple):
     reaction_moment : ndarray, shape (3,)
         About the origin, N m.
     magnetic_torque : ndarray, shape (3,)
-        N m.
+        Of the field; of one that varies, about the origin, N m.
     load_force : ndarray, shape (3,)
         N.
     load_moment : ndarray, shape (3,)
@@ -70,20 +73,52 @@ def largest_imbalances(balances: Sequence[Balance]) -> tuple[float, float]:
     return force, moment
 
 
-def magnetic_torque(discretisation: Discretisation, state: State, loading: Loading) -> tuple[FloatArray, float]:
-    """Total torque of the field (3,), N m, on shell and magnets, and the integral of its magnitude."""
-    flux_density = loading.flux_density
+class Magnetic(NamedTuple):
+    """What the field exerts on shell and magnets: force and torque about the origin (3,), and their magnitudes."""
+
+    force: FloatArray
+    torque: FloatArray
+    force_scale: float
+    torque_scale: float
+
+
+def magnetic(discretisation: Discretisation, state: State, loading: Loading) -> Magnetic:
+    """Force and torque of the field, N and N m, and the integrals of their magnitudes."""
+    field = discretisation.shell.field.at(state, loading, second=False)
+    on_shell, magnets = on_levels(discretisation, state, field), discretisation.dipoles.acting(state, loading)
+    places = discretisation.rows.points + state.u
+    moments = magnets[:, COLUMNS["omega"]] + cross(places, magnets[:, :3])
+    forces, torques = on_shell.force.reshape(-1, 3), on_shell.torque.reshape(-1, 3)
+    return Magnetic(
+        forces.sum(axis=0) + magnets[:, :3].sum(axis=0),
+        torques.sum(axis=0) + moments.sum(axis=0),
+        _sum_of_magnitudes(forces) + _sum_of_magnitudes(magnets[:, :3]),
+        _sum_of_magnitudes(torques) + _sum_of_magnitudes(moments),
+    )
+
+
+class OnLevels(NamedTuple):
+    """Force and torque about the origin of the field on each level (e, p, k, 3), N and N m."""
+
+    force: FloatArray
+    torque: FloatArray
+
+
+def on_levels(discretisation: Discretisation, state: State, field: LocalField) -> OnLevels:
+    """What a field exerts on the levels, integrated here independently of the element kernels."""
     reference = discretisation.reference
-    fields = evaluate(reference, state, level_stretch(reference, state, flux_density))
-    forces = of_couplings(reference, discretisation.couplings, fields, flux_density)
-    torque = points.magnetic_torque(reference, fields, forces) * reference.geometry.volume[..., None]
-    magnets = discretisation.dipoles.torques(state, loading)
-    magnitude = float(np.linalg.norm(torque, axis=-1).sum() + np.linalg.norm(magnets, axis=-1).sum())
-    return torque.sum(axis=(0, 1, 2)) + magnets.sum(axis=0), magnitude
+    fields = evaluate(reference, state, level_stretch(reference, state, field))
+    work = of_couplings(reference, discretisation.couplings, fields, field)
+    volume = reference.geometry.volume[..., None]
+    torque = points.magnetic_torque(reference, fields, work) * volume
+    force = -work[..., X : X + 3] * volume
+    if field.slopes is not None:
+        torque = torque + cross(level_positions(reference, state), force)
+    return OnLevels(force, torque)
 
 
 def balance(discretisation: Discretisation, state: State, loading: Loading, residual: FloatArray) -> Balance:
-    """Reactions, loads and torque of a converged state.
+    """Reactions, loads and what the field exerts on a converged state.
 
     Parameters
     ----------
@@ -99,20 +134,20 @@ def balance(discretisation: Discretisation, state: State, loading: Loading, resi
     director = discretisation.rows.normals + state.w
     moments = cross(position, reaction[:, :3]) + cross(director, reaction[:, 3:6]) + reaction[:, COLUMNS["omega"]]
     load_moments = cross(position, load[:, :3]) + cross(director, load[:, 3:6]) + load[:, COLUMNS["omega"]]
-    torque, torque_scale = magnetic_torque(discretisation, state, loading)
+    field = magnetic(discretisation, state, loading)
     force_sum, load_sum = reaction[:, :3].sum(axis=0), load[:, :3].sum(axis=0)
     moment_sum, load_moment_sum = moments.sum(axis=0), load_moments.sum(axis=0)
-    force_scale = _sum_of_magnitudes(reaction[:, :3]) + _sum_of_magnitudes(load[:, :3])
+    force_scale = _sum_of_magnitudes(reaction[:, :3]) + _sum_of_magnitudes(load[:, :3]) + field.force_scale
     force_scale += _sum_of_magnitudes(load[:, 3:6] + load[:, COLUMNS["omega"]]) / discretisation.mesh.size
-    moment_scale = _sum_of_magnitudes(moments) + _sum_of_magnitudes(load_moments) + torque_scale
+    moment_scale = _sum_of_magnitudes(moments) + _sum_of_magnitudes(load_moments) + field.torque_scale
     return Balance(
         force_sum,
         moment_sum,
-        torque,
+        field.torque,
         load_sum,
         load_moment_sum,
-        _over(force_sum + load_sum, force_scale),
-        _over(moment_sum + load_moment_sum + torque, moment_scale),
+        _over(force_sum + load_sum + field.force, force_scale),
+        _over(moment_sum + load_moment_sum + field.torque, moment_scale),
         force_scale,
         moment_scale,
     )

@@ -10,7 +10,7 @@ import numpy as np
 from magshell.arrays import FloatArray, IntArray
 from magshell.equations.discretisation import Assembly, Discretisation
 from magshell.equations.instant import Instant
-from magshell.evaluation.balance import Balance, magnetic_torque
+from magshell.evaluation.balance import Balance, magnetic
 from magshell.evaluation.points import PointFields, evaluate, level_stretch, of_couplings
 from magshell.evaluation.points import magnetic_torque as torque_of_points
 from magshell.evaluation.reactions import Reaction, held_forces, reactions
@@ -20,6 +20,7 @@ from magshell.evaluation.work import Acting, Work, acting, work_between
 from magshell.model.course import Loading
 from magshell.shell import rotation
 from magshell.shell.point import INTERNAL
+from magshell.shell.section import LocalField
 from magshell.shell.state import State
 from magshell.shell.unknowns import COLUMNS
 
@@ -84,7 +85,7 @@ class Converged:
         """Total torque of the field (3,), N m."""
         if self.balance is not None:
             return self.balance.magnetic_torque
-        return magnetic_torque(self.discretisation, self.state, self.loading)[0]
+        return magnetic(self.discretisation, self.state, self.loading).torque
 
     @property
     def body_motions(self) -> FloatArray:
@@ -117,9 +118,14 @@ class Converged:
         return evaluate(self.discretisation.reference, self.state, self._level_stretch)
 
     @cached_property
+    def local_field(self) -> LocalField:
+        """The external field at the levels."""
+        return self.discretisation.shell.field.at(self.state, self.loading, second=False)
+
+    @cached_property
     def _level_stretch(self) -> FloatArray | None:
         """Stretch that levels have of their own (elements, p, k)."""
-        return level_stretch(self.discretisation.reference, self.state, self.loading.flux_density)
+        return level_stretch(self.discretisation.reference, self.state, self.local_field)
 
     @property
     def displacement(self) -> FloatArray:
@@ -136,7 +142,7 @@ class Converged:
 
     @cached_property
     def _resultants(self) -> Resultants:
-        return Resultants(self._deformation, self.state, self.fields, self.loading.flux_density)
+        return Resultants(self._deformation, self.state, self.fields, self.local_field)
 
     def at_face(self, name: str, face: str) -> FloatArray:
         """A quantity of `Face`, by its name, at the rows of the patches."""
@@ -153,7 +159,7 @@ class Converged:
     def torque_density(self) -> FloatArray:
         """Torque of the field per undeformed volume (elements, 3), N/m², mean over the element."""
         d = self.discretisation
-        forces = of_couplings(d.reference, d.couplings, self.fields, self.loading.flux_density)
+        forces = of_couplings(d.reference, d.couplings, self.fields, self.local_field)
         return self.mean(torque_of_points(d.reference, self.fields, forces))
 
     def director(self) -> FloatArray:

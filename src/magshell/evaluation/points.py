@@ -18,6 +18,7 @@ from magshell.shell import loops, rotation
 from magshell.shell.body import Reference
 from magshell.shell.geometry import SectionGeometry, base_at, dual
 from magshell.shell.rotation import cross
+from magshell.shell.section import LocalField
 from magshell.shell.shear_profile import Moduli, middle
 from magshell.shell.state import State
 
@@ -178,21 +179,22 @@ def with_warping(reference: Reference, fields: PointFields, warping: FloatArray)
 
 
 def of_couplings(
-    reference: Reference, couplings: Sequence[Coupling], fields: PointFields, flux_density: FloatArray
+    reference: Reference, couplings: Sequence[Coupling], fields: PointFields, field: LocalField
 ) -> FloatArray:
     """Forces (e, p, k, 9) of the coupling laws that hold at the points, on m = F B̃, the spin and the position."""
     made, remanence = reference.body.levels["coupling"], reference.remanence
     m = np.einsum("epkxy,epky->epkx", fields.F, remanence)
     n = np.einsum("epxy,epky->epkx", fields.R, remanence)
-    forces = np.empty((*made.shape, WORK))
+    forces, B = np.empty((*made.shape, WORK)), np.broadcast_to(field.flux_density, m.shape)
     for number, coupling in enumerate(couplings):
         at = made == number
-        forces[at] = evaluate_coupling(coupling, m[at], n[at], flux_density)[1]
+        slopes = None if field.slopes is None else field.slopes[at]
+        forces[at] = evaluate_coupling(coupling, m[at], n[at], B[at], slopes)[1]
     return forces
 
 
 def magnetic_torque(reference: Reference, fields: PointFields, forces: FloatArray) -> FloatArray:
-    """Torque of the field per undeformed volume (e, p, k, 3), N/m².
+    """Torque of the field per undeformed volume (e, p, k, 3), N/m², beside that of the force on the position.
 
     The forces f on m = F B̃ and c on the spin do the work -(f · δm + c · δω) in a rigid rotation: a torque
     -(m × f + c), which is (1/mu0) m × B for the couple.
@@ -201,12 +203,12 @@ def magnetic_torque(reference: Reference, fields: PointFields, forces: FloatArra
     return -(cross(m, forces[..., M : M + 3]) + forces[..., OMEGA : OMEGA + 3])
 
 
-def level_stretch(reference: Reference, state: State, flux_density: FloatArray) -> FloatArray | None:
+def level_stretch(reference: Reference, state: State, field: LocalField) -> FloatArray | None:
     """Stretches ζ (elements, p, k) that the kernels eliminate; None: no element has them."""
     if reference.body.by_level is None:
         return None
     zeta = np.zeros(reference.body.levels.shape)
-    loops.level_stretches(reference.body, state, flux_density, zeta)
+    loops.level_stretches(reference.body, state, field.flux_density, zeta)
     return zeta
 
 

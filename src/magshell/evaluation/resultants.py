@@ -23,6 +23,7 @@ from magshell.evaluation.points import PointFields
 from magshell.evaluation.strain import Deformation
 from magshell.magnetics.law import M
 from magshell.shell.rotation import cross
+from magshell.shell.section import LocalField
 from magshell.shell.state import State
 
 
@@ -35,14 +36,13 @@ class Resultants:
     state : State
     fields : PointFields
         At the levels of the section.
-    flux_density : ndarray, shape (3,)
-        T.
+    field : LocalField
     """
 
-    def __init__(self, deformation: Deformation, state: State, fields: PointFields, flux_density: FloatArray) -> None:
+    def __init__(self, deformation: Deformation, state: State, fields: PointFields, field: LocalField) -> None:
         discretisation = deformation.discretisation
         self._discretisation, self._state, self._fields = discretisation, state, fields
-        self._flux_density, self._recovery, self._axes = flux_density, deformation.recovery, deformation.axes
+        self._field, self._recovery, self._axes = field, deformation.recovery, deformation.axes
         geometry, frames = discretisation.reference.geometry, self._recovery.points
         coordinates = discretisation.mesh.points[discretisation.mesh.elements]
         _, weights = discretisation.model.shell.element.integration(coordinates)
@@ -56,7 +56,7 @@ class Resultants:
         d, fields = self._discretisation, self._fields
         U = points.micropolar_stretch(fields)
         P = fields.R[:, :, None] @ points.of_materials(d.reference, d.materials, U)[1]
-        forces = points.of_couplings(d.reference, d.couplings, fields, self._flux_density)[..., M : M + 3]
+        forces = points.of_couplings(d.reference, d.couplings, fields, self._field)[..., M : M + 3]
         T = P + forces[..., None] * d.reference.remanence[..., None, :]
         return T * (d.reference.geometry.volume * self._per_area[..., None])[..., None, None]
 

@@ -64,8 +64,8 @@ def acting(
     if is_conservative(discretisation.model.coupling):
         return Acting(state, applied, None)
     field = np.zeros_like(applied)
-    if np.any(loading.flux_density):
-        without = loading._replace(flux_density=np.zeros(3))
+    if np.any(loading.drives):
+        without = loading.without_field()
         others = discretisation.assemble(Instant(state, without), tangent=False).residual
         field = discretisation.to_global(others - residual)
     return Acting(state, applied, field)

@@ -13,7 +13,7 @@ a NamedTuple of its parameters, and a function
 
 that adds to forces (9,) and tangent (9, 9), zero before; their rows M, OMEGA and X are those of m, ω and x.
 `gradients` (36,) holds ∂B_i/∂x_j (9) and ∂²B_i/∂x_j∂x_k (27); in a uniform field they vanish, and what a law has in
-the rows X is not used. A law without a potential returns 0.
+the rows and columns X is not used. A law without a potential returns 0.
 """
 
 from __future__ import annotations
@@ -106,27 +106,29 @@ def _at_points(
     m: FloatArray,
     n: FloatArray,
     B: FloatArray,
+    gradients: FloatArray,
     energy: FloatArray,
     forces: FloatArray,
     tangent: FloatArray,
 ) -> None:
-    gradients = np.zeros(GRADIENTS)
     for p in range(len(m)):
-        energy[p] = call(address, parameters, m[p], n[p], B, gradients, forces[p], tangent[p])
+        energy[p] = call(address, parameters, m[p], n[p], B[p], gradients[p], forces[p], tangent[p])
 
 
 def evaluate(
-    coupling: Coupling, m: FloatArray, n: FloatArray, B: FloatArray
+    coupling: Coupling, m: FloatArray, n: FloatArray, B: FloatArray, gradients: FloatArray | None = None
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Energy, forces and tangent of a law in a uniform field.
+    """Energy, forces and tangent of a law.
 
     Parameters
     ----------
     coupling : Coupling
     m, n : ndarray, shape (..., 3)
         T.
-    B : ndarray, shape (3,)
+    B : ndarray, shape (3,) or (..., 3)
         T.
+    gradients : ndarray, shape (..., 36), optional
+        Of B, T/m and T/m²; by default the field is uniform.
 
     Returns
     -------
@@ -137,10 +139,22 @@ def evaluate(
     energy, forces, tangent = np.zeros(count), np.zeros((count, WORK + 1)), np.zeros((count, WORK, WORK))
     forces[:, WORK] = np.nan
     m, n = (np.ascontiguousarray(one, dtype=float).reshape(-1, 3) for one in (m, n))
+    slopes = np.zeros((*places, GRADIENTS)) if gradients is None else np.asarray(gradients, dtype=float)
+    B, slopes = np.array(np.broadcast_to(B, (*places, 3))).reshape(-1, 3), slopes.reshape(-1, GRADIENTS)
     address, parameters = callbacks[type(coupling)].address, np.array(coupling, dtype=float)
-    _at_points(address, parameters, m, n, np.asarray(B, dtype=float), energy, forces, tangent)
+    _at_points(address, parameters, m, n, B.astype(float), np.ascontiguousarray(slopes), energy, forces, tangent)
     energy, forces = energy + forces[:, WORK], forces[:, :WORK] + forces[:, WORK:]
     return energy.reshape(places), forces.reshape(*places, WORK), tangent.reshape(*places, WORK, WORK)
+
+
+@also_compiled
+def pull(moment: FloatArray, gradients: FloatArray, mu0: float, forces: FloatArray, tangent: FloatArray) -> None:
+    """Add the force of the energy -(1/mu0) moment · B(x) on the position, and its derivative by the position."""
+    for i in range(3):
+        for j in range(3):
+            forces[X + j] -= moment[i] * gradients[3 * i + j] / mu0
+            for k in range(3):
+                tangent[X + j, X + k] -= moment[i] * gradients[9 + 9 * i + 3 * j + k] / mu0
 
 
 def addresses(couplings: Sequence[Coupling]) -> tuple[IntArray, FloatArray]:

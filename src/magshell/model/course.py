@@ -1,21 +1,20 @@
 """The loading along the path: field, loads and held values against the load factor of a stage.
 
-Multipliers, the angle of the field and held values vary straight with the load factor s from the start of a stage to
-its end. The field B = h R(α) B0, with multiplier h and R(α) a turn about its axis a, then varies as
-
-    dB/ds = h' R(α) B0 + α' a × B,
-
-so it turns at constant magnitude where h' = 0.
+Multipliers, places and angles of the field (`magshell.magnetics.fields`), multipliers of loads and held values vary
+straight with the load factor s from the start of a stage to its end. A uniform field B = h R(α) B0, with multiplier h
+and R(α) a turn about its axis a, then varies as dB/ds = h' R(α) B0 + α' a × B: it turns at constant magnitude where
+h' = 0.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.magnetics.fields.uniform import UniformField
+from magshell.magnetics.fields import Field, FieldUnknown, UniformField, Values
 from magshell.model.stages import Stage
 
 # Stops closer to each other than this are one.
@@ -28,36 +27,39 @@ class Loading(NamedTuple):
     Attributes
     ----------
     flux_density : ndarray, shape (3,)
-        T.
+        T; of a field that varies, at the centre of area of the undeformed shell.
     loads : ndarray, shape (loads,)
         Multiplier of each load of the model.
-    held : ndarray, shape (nodes, 11)
+    held : ndarray, shape (rows, 11)
         Values at the supports, in the nodes' frames.
+    drives : ndarray, shape (drives,)
+        Amounts of the field.
     """
 
     flux_density: FloatArray
     loads: FloatArray
     held: FloatArray
+    drives: FloatArray
 
     def plus(self, other: Loading) -> Loading:
         """The sum."""
         return Loading(*(one + two for one, two in zip(self, other, strict=True)))
 
+    def without_field(self) -> Loading:
+        """With no field."""
+        return self._replace(flux_density=np.zeros(3), drives=np.zeros_like(self.drives))
+
 
 class Amounts(NamedTuple):
-    """What varies straight within a stage: multiplier and angle (rad) of the field, loads, held values."""
+    """What varies straight within a stage: amounts of the field, multipliers of loads, held values."""
 
-    field: float
-    angle: float
+    drives: FloatArray
     loads: FloatArray
     held: FloatArray
 
     def between(self, other: Amounts, fraction: float) -> Amounts:
-        """This far on the way to others."""
-        field = self.field + fraction * (other.field - self.field)
-        angle = self.angle + fraction * (other.angle - self.angle)
-        loads = self.loads + fraction * (other.loads - self.loads)
-        return Amounts(field, angle, loads, self.held + fraction * (other.held - self.held))
+        """Linear interpolation towards `other`."""
+        return Amounts(*(one + fraction * (two - one) for one, two in zip(self, other, strict=True)))
 
 
 class Course(NamedTuple):
@@ -66,15 +68,18 @@ class Course(NamedTuple):
     Attributes
     ----------
     stage : Stage
-    field : UniformField
+    field : Field
     start, end : Amounts
         At load factors 0 and 1.
+    centre : ndarray, shape (3,)
+        Where a field that varies is told, m.
     """
 
     stage: Stage
-    field: UniformField
+    field: Field
     start: Amounts
     end: Amounts
+    centre: FloatArray
 
     def amounts(self, load_factor: float) -> Amounts:
         """At a load factor, also outside [0, 1]."""
@@ -83,22 +88,30 @@ class Course(NamedTuple):
     def at(self, load_factor: float) -> Loading:
         """The loading at a load factor."""
         now = self.amounts(load_factor)
-        return Loading(now.field * self.field.turned(now.angle), now.loads, now.held)
+        return Loading(self._told(self.field.at, now.drives), now.loads, now.held, now.drives)
 
     def rate(self, load_factor: float) -> Loading:
         """Its derivative with respect to the load factor."""
         now, start, end = self.amounts(load_factor), self.start, self.end
-        direction = self.field.turned(now.angle)
-        turning = now.field * (end.angle - start.angle) * np.cross(self.field.axis, direction)
-        return Loading((end.field - start.field) * direction + turning, end.loads - start.loads, end.held - start.held)
+        drives = end.drives - start.drives
+        change = self._told(self.field.rate, now.drives, drives)
+        return Loading(change, end.loads - start.loads, end.held - start.held, drives)
+
+    def _told(self, of_field: Callable[..., Values], *amounts: FloatArray) -> FloatArray:
+        """Flux density at the centre; NaN is never told, zero where the field is not known there."""
+        try:
+            return np.array(of_field(*amounts, self.centre[None]).flux_density[0])
+        except FieldUnknown:
+            return np.zeros(3)
 
     def stops(self) -> list[float]:
         """Load factors that the path must hit, 1 the last: the stage's own, and where |B| meets the field's stops."""
         factors = {1.0, *self.stage.stops}
-        start, change = self.start.field, self.end.field - self.start.field
-        for stop in np.asarray(self.field.stops, dtype=float).tolist() if change else ():
-            for multiplier in (stop / self.field.magnitude, -stop / self.field.magnitude):
-                factors.add((multiplier - start) / change)
+        start, change = float(self.start.drives[0]), float(self.end.drives[0] - self.start.drives[0])
+        if isinstance(self.field, UniformField) and change:
+            for stop in np.asarray(self.field.stops, dtype=float).tolist():
+                for multiplier in (stop / self.field.magnitude, -stop / self.field.magnitude):
+                    factors.add((multiplier - start) / change)
         rising: list[float] = []
         for factor in sorted(factor for factor in factors if SAME_STOP < factor < 1.0 - SAME_STOP):
             if not rising or factor - rising[-1] > SAME_STOP:

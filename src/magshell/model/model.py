@@ -15,11 +15,12 @@ from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.drawing import drawing
 from magshell.errors import InputError, NothingLoads, suggest
 from magshell.magnetics.deformation_gradient_energy import DeformationGradientEnergy
-from magshell.magnetics.fields.uniform import UniformField
+from magshell.magnetics.fields import Field, FieldUnknown, UniformField
 from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.model import coupling_limit, doubts, symmetry
 from magshell.model.course import Amounts, Course, Loading
 from magshell.model.loads import Applied, Load
+from magshell.model.loads.distribution import nodal_areas
 from magshell.model.loads.mass import Mass, whole_mass
 from magshell.model.named_supports import NamedSupport, named_supports
 from magshell.model.parts import REST, Part
@@ -45,7 +46,7 @@ class Model:
     shell : Shell
     supports : sequence of Support
         `Clamp`, `SimpleSupport`, `SymmetryPlane`, `Prescribe`.
-    field : UniformField, optional
+    field : Field, optional
         By default none.
     coupling : Coupling, optional
         Magnetic coupling law; by default the couple of the micropolar theory, or without micro-rotation the energy of
@@ -87,7 +88,7 @@ class Model:
 
     shell: Shell
     supports: Sequence[Support]
-    field: UniformField = NO_FIELD
+    field: Field = NO_FIELD
     coupling: Any = None
     probes: Mapping[str, ArrayLike] = dataclasses.field(default_factory=dict)
     loads: Sequence[Load] = ()
@@ -104,11 +105,6 @@ class Model:
     _ends: tuple[Amounts, ...] = dataclasses.field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        if not isinstance(self.field, UniformField):
-            raise InputError(
-                "field: it varies in space (magnets, coils, a gradient, a grid, a function), and the equations have no "
-                "forces of such a field yet; a model takes a UniformField"
-            )
         mesh = self.shell.mesh
         put = object.__setattr__
         if self.coupling is None:
@@ -204,7 +200,7 @@ class Model:
             return "a moment"
         if any(one.column_field == "omega" and nodes[one.columns].any() for one in pairs):
             return "a follower"
-        field = self.field.magnitude > 0.0 and not isinstance(self.coupling, DeformationGradientEnergy)
+        field = self.largest_field > 0.0 and not isinstance(self.coupling, DeformationGradientEnergy)
         if field and (len(self.shell.parts) == 1 or np.any(part.remanence)):
             return type(self.coupling).__name__
         return ""
@@ -213,7 +209,7 @@ class Model:
         if any(np.any(amounts.held) or np.any(amounts.loads) for amounts in self._ends):
             return
         otherwise = "and no support moves, nor is there a load: nothing loads the shell"
-        if not any(amounts.field * self.field.magnitude for amounts in self._ends):
+        if not self.largest_field:
             raise NothingLoads(f"field: flux_density is zero {otherwise}")
         if not self.shell.magnetised and not any(np.any(body.moment) for body in self.shell.rigid):
             raise NothingLoads(f"remanence: it is zero everywhere {otherwise}")
@@ -243,30 +239,56 @@ class Model:
 
     @property
     def largest_field(self) -> float:
-        """Largest magnitude of the field along the path, T."""
-        return max(abs(amounts.field) for amounts in self._ends) * self.field.magnitude
+        """Largest magnitude of the field along the path, T; of one that varies, at the nodes and the stages' ends."""
+        if isinstance(self.field, UniformField):
+            return max(abs(float(amounts.drives[0])) for amounts in self._ends) * self.field.magnitude
+        return self._largest_at_nodes
+
+    @property
+    def field_magnitude(self) -> float:
+        """Of a uniform field, T, at multiplier 1; of one that varies, the largest at the nodes along the path."""
+        return self.field.magnitude if isinstance(self.field, UniformField) else self.largest_field
+
+    @cached_property
+    def _largest_at_nodes(self) -> float:
+        points, largest = self.shell.mesh.points, 0.0
+        for amounts in self._ends:
+            try:
+                B = self.field.at(amounts.drives, points, second=False).flux_density
+            except FieldUnknown as unknown:
+                node = int(np.argmin(np.linalg.norm(points - unknown.position, axis=1)))
+                raise InputError(f"field: at node {node} of the undeformed shell: {unknown}") from None
+            if not np.isfinite(B).all():
+                node = int(np.argmin(np.isfinite(B).all(axis=1)))
+                place = ", ".join(f"{1e3 * x:.4g}" for x in points[node])
+                raise InputError(f"field: it is not finite at node {node}, at ({place}) mm")
+            largest = max(largest, float(np.linalg.norm(B, axis=1).max()))
+        return largest
+
+    @cached_property
+    def _centre(self) -> FloatArray:
+        """Centre of area of the undeformed shell (3,), m."""
+        areas = nodal_areas(self.shell, np.arange(len(self.shell.mesh.elements)))
+        return np.asarray(areas @ self.shell.mesh.points / areas.sum())
 
     def _longest_history(self) -> int:
-        owners = (self.field, *self.loads, *self.supports)
-        histories = (getattr(owner, name, None) for owner in owners for name in ("history", "rotation"))
-        return max((len(history) for history in histories if history is not None), default=1)
+        histories = (getattr(owner, "history", None) for owner in (*self.loads, *self.supports))
+        lengths = [len(history) for history in histories if history is not None]
+        return max([self.field.stages, *lengths])
 
     def _amounts_at_the_ends(self) -> tuple[Amounts, ...]:
         """What varies along the path, undeformed and at the end of each stage."""
         count = len(self.stages)
-        field = np.append(0.0, amplitudes(self.field.history, count, "field"))
-        turned = np.zeros(count + 1)
-        if self.field.rotation is not None:
-            turned[1:] = amplitudes(self.field.rotation, count, "field: rotation")
+        drives = self.field.ends(count)
         loads = np.zeros((count + 1, len(self.loads)))
         for number, load in enumerate(self.loads):
             loads[1:, number] = amplitudes(load.history, count, load.label)
         held = np.concatenate([np.zeros_like(self.constraints.values[:1]), self.constraints.values])
-        return tuple(Amounts(float(field[k]), float(turned[k]), loads[k], held[k]) for k in range(count + 1))
+        return tuple(Amounts(drives[k], loads[k], held[k]) for k in range(count + 1))
 
     def course(self, stage: int, start: Amounts | None = None) -> Course:
         """The loading of a stage that starts from given amounts; by default from where histories put its start."""
-        return Course(self.stages[stage], self.field, start or self._ends[stage], self._ends[stage + 1])
+        return Course(self.stages[stage], self.field, start or self._ends[stage], self._ends[stage + 1], self._centre)
 
     def loading(self, load_factor: float) -> Loading:
         """The loading in the first stage."""

@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
-from magshell.magnetics.fields.uniform import UniformField
+from magshell.magnetics.fields import Field, UniformField
 from magshell.mesh import Mesh
 from magshell.mesh.geometry import COINCIDENT
 from magshell.model.course import Course
@@ -45,7 +45,7 @@ class Mirrored(Protocol):
     @property
     def supports(self) -> Sequence[Support]: ...
     @property
-    def field(self) -> UniformField: ...
+    def field(self) -> Field: ...
     @property
     def loads(self) -> Sequence[Load]: ...
     @property
@@ -141,14 +141,15 @@ def _fields(model: Mirrored) -> Iterator[tuple[int, FloatArray]]:
 
     Of one that turns there are three, which are in the plane (normal to it) only if all on the way are.
     """
-    if not model.field.magnitude:
+    field = model.field
+    if not isinstance(field, UniformField) or not field.magnitude:
         return
     for number in range(len(model.stages)):
-        start, end = (model.course(number).amounts(load_factor) for load_factor in (0.0, 1.0))
-        if start.field or end.field:
-            turn = float(np.clip(end.angle - start.angle, -2.0, 2.0))
-            for angle in {end.angle, end.angle - 0.5 * turn, end.angle - turn}:
-                yield number, model.field.turned(angle)
+        start, end = (model.course(number).amounts(load_factor).drives.tolist() for load_factor in (0.0, 1.0))
+        if start[0] or end[0]:
+            turn = float(np.clip(end[1] - start[1], -2.0, 2.0))
+            for angle in {end[1], end[1] - 0.5 * turn, end[1] - turn}:
+                yield number, field.turned(angle)
 
 
 def _of_loads(model: Mirrored, plane: Plane) -> Iterator[str]:

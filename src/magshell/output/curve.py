@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from magshell.arrays import FloatArray
+from magshell.magnetics.fields import UniformField
 from magshell.output.rounding import STILL
 from magshell.output.series import COMPONENTS, Curve, chosen
 from magshell.output.style import ACCENT, COLOURS, DPI, TEXT, TICKS, deliver
@@ -115,7 +116,7 @@ def abscissa(path: Path, points: Sequence[Step | CriticalPoint] | None = None) -
     """
     field = path.model.field
     points = path.steps if points is None else points
-    if field.magnitude == 0.0 or field.rotation is not None:
+    if not isinstance(field, UniformField) or field.magnitude == 0.0 or field.rotation is not None:
         return False, np.array([point.stage + point.load_factor for point in points])
     along = field.vector / field.magnitude
     return True, np.array([1e3 * float(point.flux_density @ along) for point in points])

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from magshell.arrays import FloatArray
+from magshell.magnetics.fields import UniformField
 from magshell.model.parts import Part
 from magshell.model.words import name_of, offset_of, thickness_of
 from magshell.output.curve import FIELD, abscissa, curves, dress
@@ -118,9 +119,12 @@ def _model_rows(model: Model) -> list[tuple[str, str]]:
     strength = np.linalg.norm(_remanence(model), axis=1)
     if strength.any():
         rows.append(("remanence", _range(strength)))
-    if model.field.magnitude:
-        field = ", ".join(show(float(value), FLUX_DENSITY) if value else "0" for value in model.field.vector)
-        rows.append(("field", f"({field}), {type(model.coupling).__name__}"))
+    if model.field_magnitude:
+        field = "varies in space"
+        if isinstance(model.field, UniformField):
+            components = (show(float(value), FLUX_DENSITY) if value else "0" for value in model.field.vector)
+            field = f"({', '.join(components)})"
+        rows.append(("field", f"{field}, {type(model.coupling).__name__}"))
     if model.loads:
         rows.append(("loads", _listed([f"{load.kind} on {load.group or 'whole shell'}" for load in model.loads])))
     if model.supports:
@@ -178,7 +182,7 @@ def _path_rows(path: Path) -> list[tuple[str, str]]:
     reached = f"load factor {last.load_factor:.4g}"
     if len(path.model.stages) > 1:
         reached += f" of stage {last.stage + 1} of {len(path.model.stages)}"
-    if path.model.field.magnitude:
+    if path.model.field_magnitude:
         reached += f", |B| = {show(float(np.linalg.norm(last.flux_density)), FLUX_DENSITY)}"
     rows.append(("reached", reached + (", an unstable state" if last.negative_pivots else "")))
     if path.critical_points:
@@ -277,8 +281,8 @@ def _magnetism(axes: Axes, model: Model, view: FloatArray) -> list[Any]:
         feet, parts = middles[chosen] @ view[:2].T, length * (remanence[chosen] / strongest) @ view[:2].T
         axes.quiver(*feet.T, *parts.T, color=INK, width=1.5, **arrow)
         handles.append(_handle("remanence", INK, r"$\rightarrow$"))
-    if model.field.magnitude > 0:
-        direction = model.field.vector / model.field.magnitude @ view[:2].T
+    if isinstance(model.field, UniformField) and model.field_magnitude > 0:
+        direction = model.field.vector / model.field_magnitude @ view[:2].T
         (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
         length = 0.14 * max(right - left, high - low)
         if np.linalg.norm(direction) > 0.05:

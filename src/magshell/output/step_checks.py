@@ -109,7 +109,7 @@ def fault_of_path(path: Path) -> tuple[int, str] | None:
             ("flux_density", step.flux_density, there.flux_density),
             ("loads", step.loads, there.loads),
         ):
-            scale = max(float(np.abs(expected).max(initial=0.0)), path.model.field.magnitude if name[0] == "f" else 1.0)
+            scale = max(float(np.abs(expected).max(initial=0.0)), path.model.field_magnitude if name[0] == "f" else 1.0)
             if np.abs(own - expected).max(initial=0.0) > ROUND_OFF * scale:
                 return step.number, f"{name} is {own.tolist()}, but the problem has {expected.tolist()} there"
     last = path.trail[-1]

@@ -189,7 +189,8 @@ def _field(problem: Problem, figures: Whole) -> Iterator[tuple[str, str]]:
     if figures.field == 0.0:
         yield "flux density B", "none"
         return
-    yield "flux density B", quantity(table.vector, FLUX_DENSITY)
+    if any(table.vector):
+        yield "flux density B", quantity(table.vector, FLUX_DENSITY)
     yield "|B|", show(figures.field, FLUX_DENSITY)
     yield "coupling law", table.coupling
     if table.stops:
@@ -225,7 +226,7 @@ def _stages(problem: Problem) -> Iterator[tuple[str, str]]:
     for number, stage in enumerate(problem.model.stages):
         end = problem.model.course(number).at(1.0)
         parts = [f"{stage.control} control"]
-        if problem.model.field.magnitude:
+        if problem.model.field_magnitude:
             field = ", ".join(show(component, FLUX_DENSITY) for component in end.flux_density)
             parts.append(f"field ({field})")
         for load, multiplier in zip(problem.model.loads, end.loads, strict=True):

@@ -24,7 +24,7 @@ WORDS = {MIRRORED: "mirrored", REVERSED: "mirrored and reversed"}
 def other_half(problem: Problem, plane: Plane) -> str:
     """How the other half is magnetised, to be added to the support; empty without field or remanence."""
     model = problem.model
-    if not model.field.magnitude or not model.shell.magnetised:
+    if not model.field_magnitude or not model.shell.magnetised:
         return ""
     sign = symmetry.remanence_sign(model, plane)
     return "" if sign is None else f"; the other half has the remanence {WORDS[sign]}"
@@ -35,7 +35,7 @@ def doubts(problem: Problem) -> Iterator[str]:
     entries, model = problem.file.remanence, problem.model
     if model.shell.overall_remanence is not model.shell.remanence:
         return
-    if not model.field.magnitude or len(entries) != 1 or entries[0].group or not REMANENCES[entries[0].kind].in_space:
+    if not model.field_magnitude or len(entries) != 1 or entries[0].group or not REMANENCES[entries[0].kind].in_space:
         return
     for plane in symmetry.planes(model):
         sign = symmetry.remanence_sign(model, plane)

@@ -77,7 +77,7 @@ def first_touch(path: Path, height: float, side: str = "right") -> Touch | None:
         return Touch(0.0, float(polar[free][gaps[1].argmin()]))
     curve = CubicSpline(load, gaps)
     at = float(brentq(lambda t: float(curve(t).min()), load[first - 1], load[first]))
-    return Touch(at * path.model.field.magnitude, float(polar[free][curve(at).argmin()]))
+    return Touch(at * path.model.field_magnitude, float(polar[free][curve(at).argmin()]))
 
 
 def gap(path: Path, step: Step, height: float, side: str = "right") -> FloatArray:

@@ -189,7 +189,7 @@ def _gripper(paths: Paths) -> list[Row]:
 def _touching(path: Path, finer: Path) -> list[Row]:
     middle, inner, outer = (first_touch(path, height) for height in (MIDDLE, INNER, OUTER))
     at_paper, at_one, early = step_at(path, 1e-3 * TOUCHING), step_at(path, 1e-3), path.steps[1]
-    start = 1e3 * early.load_factor * path.model.field.magnitude
+    start = 1e3 * early.load_factor * path.model.field_magnitude
     rows = []
     overlaps = (f"{_overlap(path, at_paper, height):.2f} mm" for height in (MIDDLE, OUTER))
     note = (

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray
+from magshell.model.model import Model
 from magshell.output.bodies import Body, cameras_for, faces, render
 from magshell.output.panels import (
     Place,
@@ -68,7 +69,7 @@ def shapes_figure(example: Example, paths: Mapping[str, Path]) -> Figure:
     camera = draw_sequence(
         figure, groups, [f"{field:g} mT" for field in example.fields], places, scale, example.view, example.size
     )
-    field_arrow(figure, 0.045, 0.5, _on_picture(camera, groups[0][0].path.model.field.vector))
+    field_arrow(figure, 0.045, 0.5, _on_picture(camera, _field_of(groups[0][0].path.model)))
     colour_bar(figure, (0.9, 0.22, 0.015, 0.55), scale, f"${example.quantity}$ (mm)")
     return figure
 
@@ -95,7 +96,7 @@ def undeformed_figure(example: Example, paths: Mapping[str, Path]) -> Figure:
     axes = put(figure, place, render(bodies, camera, _pale, pixels(figure, place), arrows, REMANENCE))
     body = bodies[0]
     _probes(axes, body, camera, 72.0 / DPI * np.array(pixels(figure, place)))
-    field_arrow(figure, 0.07, 0.5, _on_picture(camera, body.path.model.field.vector))
+    field_arrow(figure, 0.07, 0.5, _on_picture(camera, _field_of(body.path.model)))
     _key(figure)
     _triad(figure, camera)
     return figure
@@ -175,3 +176,8 @@ def _triad(figure: Figure, camera: Camera) -> None:
         axes.annotate("", tuple(origin + tip), tuple(origin), "figure points", "figure points", arrowprops=arrow)
         at = tuple(origin + tip * (1 + beyond / max(float(np.linalg.norm(tip)), 1e-9)))
         axes.annotate(f"$X_{i + 1}$", at, xycoords="figure points", ha="center", va="center", fontsize=13, color=GREY)
+
+
+def _field_of(model: Model) -> FloatArray:
+    """The uniform field (3,) of an example, T."""
+    return model.course(0).at(1.0).flux_density

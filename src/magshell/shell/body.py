@@ -15,6 +15,7 @@ from magshell.shell.element import layout_of
 from magshell.shell.elements import ElementType
 from magshell.shell.geometry import Interpolation, SectionGeometry, Sections, interpolation, section_geometry
 from magshell.shell.level import Laws
+from magshell.shell.loaded import loaded
 from magshell.shell.loops import Body
 from magshell.shell.point import LEVEL, POINT
 from magshell.shell.ties import STRETCHED, TURNED, Ties
@@ -77,12 +78,13 @@ class Make(NamedTuple):
 
 
 class Reference(NamedTuple):
-    """The undeformed shell: what the kernels read, and views of it by name."""
+    """The undeformed shell: what the kernels read, and views of it by name; positions (elements, 8, 3) of the nodes."""
 
     body: Body
     geometry: SectionGeometry
     shape: Interpolation
     remanence: FloatArray
+    coordinates: FloatArray
 
 
 def reference_of(surface: Surface, make: Make) -> Reference:
@@ -99,7 +101,8 @@ def reference_of(surface: Surface, make: Make) -> Reference:
     levels["height"], levels["warping"] = make.sections.heights, make.warping
     levels["remanence"] = make.remanence
     levels["material"], levels["coupling"] = make.material_of[:, None], make.coupling_of[:, None]
-    points = _points(geometry, shape, of_elements(make, "couple_modulus"))
+    position = loaded(element, element.integration(surface.points)[0], surface.points).values
+    points = _points(geometry, shape, position, of_elements(make, "couple_modulus"))
     points["levels"], points["by_level"] = make.levels[:, None], make.by_level[:, None]
     heights = make.sections.heights.mean(axis=1)
     shear_modulus = np.average(of_elements(make, "shear_modulus"), axis=1, weights=heights)
@@ -125,7 +128,7 @@ def reference_of(surface: Surface, make: Make) -> Reference:
         points["rotation"][..., : layout.q],
         shape.enhancement,
     )
-    return Reference(body, views, functions, levels["remanence"])
+    return Reference(body, views, functions, levels["remanence"], surface.points)
 
 
 def of_elements(make: Make, name: str) -> FloatArray:
@@ -133,12 +136,14 @@ def of_elements(make: Make, name: str) -> FloatArray:
     return np.array([getattr(material, name) for material in make.materials])[make.material_of]
 
 
-def _points(geometry: SectionGeometry, shape: Interpolation, couple_modulus: FloatArray) -> AnyArray:
+def _points(
+    geometry: SectionGeometry, shape: Interpolation, position: FloatArray, couple_modulus: FloatArray
+) -> AnyArray:
     points = np.zeros(geometry.A.shape[:2], dtype=POINT)
     points["A"], points["D"], points["dD"] = geometry.A, geometry.D, geometry.dD
     legs = geometry.G[..., :2, :]
     points["couple_metric"] = np.einsum("ek,epk,epkax,epkbx->epab", couple_modulus, geometry.volume, legs, legs)
-    points["u"] = shape.u
+    points["u"], points["position"] = shape.u, position
     points["director"][..., : shape.director.shape[-1]] = shape.director
     points["phi"][..., : shape.phi.shape[-1]] = shape.phi
     points["rotation"][..., : shape.rotation.shape[-1]] = shape.rotation

@@ -52,7 +52,7 @@ def level_scratch(by_level: AnyArray | None, levels: int) -> FloatArray | None:
 def solve_level_stretch(
     w: Record, point: Record, levels: AnyArray, laws: Laws, B: FloatArray, across: FloatArray
 ) -> bool:
-    """Fill across[ZETA] (levels,) for w.x and the rotation w.R; False where there is no equilibrium to be found.
+    """Fill across[ZETA] (levels,) for w.x, w.R and the field B (levels, 3); False where no equilibrium is found.
 
     A point of weight zero has nothing to eliminate.
     """
@@ -64,7 +64,7 @@ def solve_level_stretch(
     for _ in range(STEPS):
         force, compliance = 0.0, 0.0
         for k in range(len(levels)):
-            f, s = force_and_stiffness(w, point, levels[k], laws, B, zeta[k], across)
+            f, s = force_and_stiffness(w, point, levels[k], laws, B[k], zeta[k], across)
             if not s > 0.0:
                 return False
             force += levels[k].height * f / s

@@ -28,7 +28,7 @@ from magshell.shell.level import Laws
 from magshell.shell.level_stretch import ZETA, level_scratch, solve_level_stretch
 from magshell.shell.point import INTERNAL, MAGNETIC, PADDED, SIZE, Q, workspace
 from magshell.shell.rotation import LAST, NEXT, rotation_matrix
-from magshell.shell.section import Request, predicted_stress, section
+from magshell.shell.section import Mixed, Request, predicted_stress, section
 from magshell.shell.state import State
 from magshell.shell.ties import (
     Tied,
@@ -39,6 +39,7 @@ from magshell.shell.ties import (
     stretch_directors,
     stretch_increments,
 )
+from magshell.shell.varying_field import add_position_forces, contract_position, position_scratch, slopes_at
 
 
 class Body(NamedTuple):
@@ -147,6 +148,7 @@ def fill(
     records = workspace()
     w = records[0]
     across = level_scratch(body.by_level, body.levels.shape[2])
+    position = position_scratch(request.field.slopes, size)
     for e in range(first, min(first + len(out.K), len(body.elements))):
         nodes, Kt, r = body.elements[e], out.K[e - first], out.r[0, e]
         gather(nodes, state, state.alpha[e], layout, v)
@@ -161,7 +163,10 @@ def fill(
             point, levels, enhancement = body.points[e, p], body.levels[e, p], body.enhancement[e, p]
             levels = levels[: point.levels]
             point_values(point, enhancement, layout, v, w.x)
-            J = section(w, point, levels, body.laws, request, stresses.S[e, p], stresses.kappa[e, p], across)
+            at = e if len(request.field.flux_density) > 1 else 0
+            B, slopes = request.field.flux_density[at, p], slopes_at(request.field.slopes, at, p)
+            mixed = Mixed(stresses.S[e, p], stresses.kappa[e, p])
+            J = section(w, point, levels, body.laws, request, B, slopes, mixed, across)
             if not J > 0.0:
                 return e, J
             out.energy[e, INTERNAL] += w.energy[INTERNAL]
@@ -178,6 +183,10 @@ def fill(
                     transpose(GH, HG)
                     rows, target = HG, Kt
                 contract(point, enhancement, layout, T, rows, scratch, target)
+            if position is not None:
+                add_position_forces(w, point, layout, forces)
+                if tangent:
+                    contract_position(w, point, enhancement, layout, T, scratch, position, Kt)
             if tangent:
                 add_radial_force(point, layout, w.g, v, radial)
         for number in range(len(body.hold.k)):
@@ -233,12 +242,15 @@ def _gather_increment(nodes: IntArray, increment: FloatArray, layout: Layout, dv
 def predict_stresses(
     body: Body,
     state: State,
-    flux_density: FloatArray,
+    field: FloatArray,
     increment: FloatArray,
     d_alpha: FloatArray,
     stresses: Stresses,
 ) -> None:
-    """Fill the stresses predicted linearly from `state` for a nodal increment (nodes, 11) and Δα, in a field, T."""
+    """Fill the stresses predicted linearly from `state` for a nodal increment (nodes, 11) and Δα.
+
+    `field` (elements, p, k, 3) is that of `LocalField`.
+    """
     layout = body.layout
     modes, rest, at = layout.modes, layout.q, layout.at_q
     full = layout.nodal + rest + 3 * modes
@@ -269,14 +281,15 @@ def predict_stresses(
             levels, S, kappa = levels[: point.levels], stresses.S[e, p], stresses.kappa[e, p]
             point_values(point, enhancement, layout, v, w.x)
             point_values(point, enhancement, layout, dv, w.dx)
-            predicted_stress(w, point, levels, body.laws, flux_density, S, kappa, across)
+            B = field[e if len(field) > 1 else 0, p]
+            predicted_stress(w, point, levels, body.laws, B, S, kappa, across)
 
 
 @Kernel
-def level_stretches(body: Body, state: State, flux_density: FloatArray, zeta: FloatArray) -> None:
+def level_stretches(body: Body, state: State, field: FloatArray, zeta: FloatArray) -> None:
     """Fill the stretch ζ (e, p, k) that each level has of its own (`level_stretch.py`); zero where φ is a field.
 
-    NaN where there is none in equilibrium.
+    NaN where there is none in equilibrium. `field` (elements, p, k, 3) is that of `LocalField`.
     """
     layout = body.layout
     v, records = np.zeros(layout.nodal + layout.q + 3 * layout.modes), workspace()
@@ -293,7 +306,8 @@ def level_stretches(body: Body, state: State, flux_density: FloatArray, zeta: Fl
             point_values(point, body.enhancement[e, p], layout, v, w.x)
             rotation_matrix(w.x[Q : Q + 4], w.R)
             levels = body.levels[e, p][: point.levels]
-            if not solve_level_stretch(w, point, levels, body.laws, flux_density, across):
+            B = field[e if len(field) > 1 else 0, p]
+            if not solve_level_stretch(w, point, levels, body.laws, B, across):
                 zeta[e, p, :] = np.nan
                 continue
             for k in range(len(levels)):

@@ -22,8 +22,8 @@ NODES = 8
 INTERNAL, MAGNETIC, MIXED = 0, 1, 2
 
 #: A point of the mid-surface: base A_α (m), director D and D,α, metric c^αβ of the couple stress (N m), functions of
-#: the element's nodes (see `Interpolation`; those of fewer nodes come first), how many levels it has, and whether each
-#: has a stretch of its own (`level_stretch.py`).
+#: the element's nodes (see `Interpolation`; those of fewer nodes come first; of the position: `loaded.py`), how many
+#: levels it has, and whether each has a stretch of its own (`level_stretch.py`).
 POINT = np.dtype(
     [
         ("A", float, (2, 3)),
@@ -31,6 +31,7 @@ POINT = np.dtype(
         ("dD", float, (2, 3)),
         ("couple_metric", float, (2, 2)),
         ("u", float, (2, NODES)),
+        ("position", float, (NODES,)),
         ("director", float, (3, NODES)),
         ("phi", float, (NODES,)),
         ("rotation", float, (3, NODES)),
@@ -101,6 +102,13 @@ WORKSPACE = np.dtype(
         ("kappa", float, (2, 3)),
         ("stress", float, (2, 3)),
         ("couples", float, (3, 3)),
+        ("g_x", float, (3,)),
+        ("e", float, (3,)),
+        ("H_x", float, (3, SIZE)),
+        ("H_rx", float, (SIZE, 3)),
+        ("H_xx", float, (3, 3)),
+        ("H_xω", float, (3, 3)),
+        ("H_ωx", float, (3, 3)),
         ("energy", float, (2,)),
     ]
 )

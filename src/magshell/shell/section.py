@@ -51,6 +51,22 @@ from magshell.shell.level_stretch import (
 )
 from magshell.shell.point import ENHANCED, INTERNAL, MAGNETIC, MIXED, PHI, Q1, U1, W1, Q, Record, W
 from magshell.shell.rotation import LAST, NEXT, rotation_matrix, spin_map, wryness_maps
+from magshell.shell.varying_field import add_position, clear_position, finish_position, set_slopes
+
+
+class LocalField(NamedTuple):
+    """The external field at the levels.
+
+    Attributes
+    ----------
+    flux_density : ndarray, shape (elements, p, k, 3)
+        T; of a uniform field, that of one element stands for all.
+    slopes : ndarray, shape (elements, p, k, 36), or None
+        First and second derivatives, T/m and T/m²; None: the field is uniform.
+    """
+
+    flux_density: FloatArray
+    slopes: FloatArray | None
 
 
 class Request(NamedTuple):
@@ -58,17 +74,23 @@ class Request(NamedTuple):
 
     Attributes
     ----------
-    flux_density : ndarray, shape (3,)
-        T.
+    field : LocalField
     mixed : bool
         Whether the geometric part of the tangent is made with given stresses in place of the state's.
     tangent : bool
         Whether there is to be a tangent.
     """
 
-    flux_density: FloatArray
+    field: LocalField
     mixed: bool
     tangent: bool
+
+
+class Mixed(NamedTuple):
+    """Stresses S (levels, 3, 3) and wryness κ (2, 3) of the geometric part of a point."""
+
+    S: FloatArray
+    kappa: FloatArray
 
 
 @inline
@@ -193,8 +215,9 @@ def section(
     levels: AnyArray,
     laws: Laws,
     request: Request,
-    S_mixed: FloatArray,
-    kappa_mixed: FloatArray,
+    B: FloatArray,
+    slopes: FloatArray | None,
+    mixed: Mixed,
     across: FloatArray | None,
 ) -> float:
     """Gradient and Hessian of a point that sees w.x; returns the least det F through the thickness.
@@ -202,16 +225,18 @@ def section(
     Fills the internal and the magnetic column of w.g; with a tangent also w.H, and the column of w.g that is the whole
     gradient which the geometric part is made with. Sets w.energy, elastic and magnetic. A point with det F <= 0, or
     whose levels have no equilibrium (0), leaves them unfinished. `across` (4, levels) is scratch; None where no section
-    stretches level by level.
+    stretches level by level. B (levels, 3) is the field, `slopes` (levels, 36) its derivatives; None: it is uniform.
     """
     x, g, V, base, t, b, dg3, couples = w.x, w.g, w.V, w.base, w.t, w.b, w.dg3, w.couples
     forces, tangent, by_level, c = w.forces, request.tangent, False, 0.0
     _clear(w, tangent)
+    if slopes is not None:
+        clear_position(w, tangent)
     n2 = rotation_matrix(x[Q : Q + 4], w.R)
     spin_map(x[Q : Q + 4], n2, V)
     if across is not None:
         by_level = point.by_level != 0
-        if by_level and not solve_level_stretch(w, point, levels, laws, request.flux_density, across):
+        if by_level and not solve_level_stretch(w, point, levels, laws, B, across):
             return 0.0
     least = np.inf
     for k in range(len(levels)):
@@ -229,9 +254,11 @@ def section(
         w.energy[INTERNAL] += volume * stress(w, point.D, levels[k], laws, across)
         stress_vectors(w.R, w.P, G, volume, t)
         carry(w, G, levels[k].remanence)
+        if slopes is not None:
+            set_slopes(w, slopes[k])
         for i in range(3):
             dg3[i] = scale * (point.D[i] + x[W + i])
-        w.energy[MAGNETIC] += volume * work(w, laws, levels[k].coupling, request.flux_density)
+        w.energy[MAGNETIC] += volume * work(w, laws, levels[k].coupling, B[k])
         for i in range(3):
             couples[MAGNETIC, i] += volume * forces[OMEGA + i]
             force = volume * forces[M + i]
@@ -242,7 +269,7 @@ def section(
                 couples[INTERNAL, i] -= base[a, j] * t[a, l] - base[a, l] * t[a, j]
         if tangent:
             if request.mixed:
-                _mix(w, S_mixed[k])
+                _mix(w, mixed.S[k])
             stress_vectors(w.R, w.P, G, volume, w.t_mixed)
             moduli_on_legs(w, G, volume)
             _level_hessian(w)
@@ -251,6 +278,9 @@ def section(
                 for l in range(3):
                     w.H_ωω[i, l] += volume * w.work_tangent[OMEGA + i, OMEGA + l]
             _scatter_level(w, z, s, scale, volume)
+        if slopes is not None:
+            add_position(w, point, z, s, volume, by_level, tangent)
+        if tangent:
             if across is not None:
                 if by_level:
                     c += eliminate_level(w, levels[k].height)
@@ -267,7 +297,9 @@ def section(
                 g[Q + r, column] += 2.0 * V[i, r] * couples[column, i]
     if tangent:
         _spin_to_quaternion(w, n2)
-    w.energy[INTERNAL] += couple_stress(w, point.couple_metric, n2, kappa_mixed, request.mixed, tangent)
+        if slopes is not None:
+            finish_position(w, by_level)
+    w.energy[INTERNAL] += couple_stress(w, point.couple_metric, n2, mixed.kappa, request.mixed, tangent)
     return least
 
 
@@ -299,12 +331,14 @@ def predicted_stress(
     point: Record,
     levels: AnyArray,
     laws: Laws,
-    flux_density: FloatArray,
+    B: FloatArray,
     S_mixed: FloatArray,
     kappa_mixed: FloatArray,
     across: FloatArray | None,
 ) -> None:
     """Fill S' = U⁻¹ (P + C : ΔU - ΔU S) (levels, 3, 3), κ' = κ + Δκ (2, 3), linear in the increment w.dx (31,).
+
+    B (levels, 3) is the field.
 
     `across` (4, levels) is scratch; None where no section stretches level by level.
     """
@@ -317,10 +351,10 @@ def predicted_stress(
     if across is not None:
         by_level = point.by_level != 0
         if by_level:
-            solve_level_stretch(w, point, levels, laws, flux_density, across)
+            solve_level_stretch(w, point, levels, laws, B, across)
             for k in range(len(levels)):
                 zeta = across[ZETA, k]
-                _, across[STIFFNESS, k] = force_and_stiffness(w, point, levels[k], laws, flux_density, zeta, across)
+                _, across[STIFFNESS, k] = force_and_stiffness(w, point, levels[k], laws, B[k], zeta, across)
                 _increments(w, point, levels[k], zeta, 0.0)
                 across[FORCE, k] = force_rate(w, point, levels[k], ω)
                 across[OWN, k], across[ZETA, k] = zeta, 0.0

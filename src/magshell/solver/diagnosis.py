@@ -248,9 +248,10 @@ def _couple(discretisation: Discretisation, state: State, loading: Loading) -> C
     """None without a micro-rotation or a field."""
     model, reference = discretisation.model, discretisation.reference
     modulus = model.shell.mean_of("coupling_modulus")
-    if not reference.body.layout.q or not modulus.any() or not np.any(loading.flux_density):
+    if not reference.body.layout.q or not modulus.any() or not np.any(loading.drives):
         return None
-    fields = evaluate(reference, state, level_stretch(reference, state, loading.flux_density))
+    field = discretisation.shell.field.at(state, loading, second=False)
+    fields = evaluate(reference, state, level_stretch(reference, state, field))
     volume = reference.geometry.volume
     total = volume.sum(axis=2, keepdims=True)
     shares = np.divide(volume, total, out=np.full_like(volume, 1.0 / volume.shape[2]), where=total > 0.0)
@@ -258,7 +259,7 @@ def _couple(discretisation: Discretisation, state: State, loading: Loading) -> C
     left, stretches, right = np.linalg.svd(F)
     Q = left @ right
     S = np.einsum("epyx,epy,epyz->epxz", right, stretches, right)
-    c = np.linalg.norm(couple := _couples(discretisation, F, fields.R, loading.flux_density), axis=-1)
+    c = np.linalg.norm(couple := _couples(discretisation, F, fields.R, field.flux_density.mean(axis=2)), axis=-1)
     axis = np.einsum("epyx,epy->epx", Q, couple) / np.maximum(c, np.finfo(float).tiny)[..., None]
     across = stretches.sum(axis=-1) - np.einsum("epx,epxy,epy->ep", axis, S, axis)
     limit = 0.5 * modulus[:, None] * across**2

@@ -26,7 +26,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from magshell.equations.instant import Instant, Prediction, combined
-from magshell.equations.term import InvertedElement
+from magshell.equations.term import FieldLost, InvertedElement
 from magshell.evaluation.points import evaluate
 from magshell.linalg import Factorisation
 from magshell.linalg.factorisation import scaled
@@ -96,7 +96,7 @@ class LinearPath:
         instant = Instant(state, self.system.course.at(s * self.unit), stresses)
         try:
             matrix = self.system.discretisation.assemble(instant).matrix
-        except InvertedElement as inverted:
+        except (InvertedElement, FieldLost) as inverted:
             raise StepFailure(f"element {inverted.element} is turned inside out on the linear path") from None
         assert matrix is not None
         return matrix.copy()

@@ -15,7 +15,7 @@ import numpy as np
 
 from magshell.equations.discretisation import Assembly, Discretisation
 from magshell.equations.instant import Increment, Instant, Prediction
-from magshell.equations.term import InvertedElement
+from magshell.equations.term import FieldLost, InvertedElement
 from magshell.linalg import Factorisation, LinearSolver, SingularMatrix
 from magshell.model.course import Course
 from magshell.shell.state import State
@@ -120,8 +120,8 @@ def newton(
     factors: Factorisation | None = None
     try:
         assembly = system.assemble(trial)
-    except InvertedElement as inverted:
-        raise _inverted(inverted) from None
+    except (InvertedElement, FieldLost) as failure:
+        raise _failed(failure) from None
     while True:
         kind, residual = assembly.worst
         residuals.append(residual)
@@ -161,9 +161,9 @@ def newton(
                 assembly = system.assemble(trial)
                 if np.isfinite(assembly.worst[1]):
                     break
-            except InvertedElement as inverted:
+            except (InvertedElement, FieldLost) as failure:
                 if halving == HALVINGS:
-                    raise _inverted(inverted) from None
+                    raise _failed(failure) from None
 
 
 def _stalled(residuals: list[float]) -> bool:
@@ -187,8 +187,10 @@ def factorise(system: System, assembly: Assembly) -> Factorisation:
         raise StepFailure(_free_direction(system.discretisation, direction)) from None
 
 
-def _inverted(inverted: InvertedElement) -> StepFailure:
-    element, determinant = inverted.element, inverted.determinant
+def _failed(failure: InvertedElement | FieldLost) -> StepFailure:
+    if isinstance(failure, FieldLost):
+        return StepFailure(f"the field at element {failure.element}: {failure.why}", failure.element)
+    element, determinant = failure.element, failure.determinant
     if determinant == 0.0:
         return StepFailure(f"the inner unknowns of element {element} cannot be eliminated")
     return StepFailure(f"element {element} is turned inside out (det F = {determinant:.2g})", element)

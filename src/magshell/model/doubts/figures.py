@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from magshell.arrays import FloatArray
+from magshell.magnetics.fields import UniformField
 from magshell.mesh.geometry import centres, unit
 from magshell.model.doubts.asked import Asked
 
@@ -93,10 +94,10 @@ class Whole:
 
 def figures_of(model: Asked) -> Whole:
     """Of a model that has passed all checks."""
-    shell, flux = model.shell, model.field.vector
+    shell, field = model.shell, model.field_magnitude
     mesh = shell.mesh
     vectors = shell.overall_remanence(mesh, centres(mesh.points, mesh.elements)[:, None])[:, 0]
-    extent, field = float(np.ptp(mesh.points, axis=0).max()), float(np.linalg.norm(flux))
+    extent = float(np.ptp(mesh.points, axis=0).max())
     remanence = np.linalg.norm(vectors, axis=1)
     mu, lam = shell.mean_of("shear_modulus"), shell.mean_of("lame_lambda")
     parts = []
@@ -120,7 +121,10 @@ def figures_of(model: Asked) -> Whole:
                 strongest=float(remanence[part.elements].max()),
             )
         )
-    couple = float(np.linalg.norm(np.cross(vectors, flux), axis=1).max())
+    if isinstance(model.field, UniformField):
+        couple = float(np.linalg.norm(np.cross(vectors, model.field.vector), axis=1).max())
+    else:
+        couple = field * float(remanence.max())
     return Whole(parts=parts, extent=extent, field=field, remanence=remanence, couple=couple)
 
 

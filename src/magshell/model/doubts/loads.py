@@ -99,5 +99,5 @@ def doubts(model: Asked, strong: Strength) -> Iterator[str]:
     if strong.stretching > 1e3:
         yield f"p L / (E h) is {strong.stretching:.2g}: a pressure {beyond}"
     moved = np.any(model.constraints.values)
-    if model.loads and not model.field.magnitude and not moved and strong.overall < 1e-3:
+    if model.loads and not model.field_magnitude and not moved and strong.overall < 1e-3:
         yield f"12 (F L + M + W L + p L³) / (E h³) is {strong.overall:.2g}: the shell will hardly move; check the units"

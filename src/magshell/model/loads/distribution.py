@@ -19,9 +19,9 @@ import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
-from magshell.model.loads.functions import loaded
 from magshell.model.shell import Shell
 from magshell.shell.elements import ElementType
+from magshell.shell.loaded import loaded
 from magshell.shell.shape_functions import gauss_legendre
 
 # Gauss points along an edge: they measure an edge that bends by a right angle to 1e-6 of its length.

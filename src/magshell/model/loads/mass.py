@@ -20,11 +20,11 @@ import numpy as np
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.model.loads.distribution import POINTS
-from magshell.model.loads.functions import loaded
 from magshell.model.parts import REST, Part
 from magshell.model.rows import Rows
 from magshell.model.shell import Shell
 from magshell.shell.geometry import director_functions
+from magshell.shell.loaded import loaded
 from magshell.shell.shape_functions import gauss_legendre
 from magshell.shell.unknowns import COLUMNS
 

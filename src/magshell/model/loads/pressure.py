@@ -31,11 +31,11 @@ from magshell.model.loads.checks import number
 from magshell.model.loads.cross import cross_matrix
 from magshell.model.loads.dead import nodal
 from magshell.model.loads.distribution import nodal_areas
-from magshell.model.loads.functions import loaded
 from magshell.model.loads.load import Applied, Arrows, Load, Pairs, Size
 from magshell.model.rows import Rows
 from magshell.model.shell import Shell
 from magshell.shell import rotation
+from magshell.shell.loaded import loaded
 from magshell.shell.shape_functions import gauss_legendre
 from magshell.shell.state import State
 from magshell.units import FORCE, STRESS, Dimension, show

@@ -95,7 +95,7 @@ def build(file: ProblemFile, source: str, text: str = "", folder: pathlib.Path =
         model = Model(
             shell,
             supports=supports,
-            field=field,  # type: ignore[arg-type]  # the model refuses what its equations do not have
+            field=field,
             coupling=COUPLINGS[file.field.coupling](),
             probes=file.probes,
             loads=loads,

@@ -23,10 +23,10 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.shell.elements import ElementType
-from magshell.shell.elements.definition import Functions
+from magshell.shell.elements.definition import Functions, Points
 
 
-def loaded(element: ElementType, parent: FloatArray, coordinates: FloatArray) -> Functions:
+def loaded(element: ElementType, parent: FloatArray | Points, coordinates: FloatArray) -> Functions:
     """Functions of u for loads at parent points (p, 2) of elements (e, 8, 3)."""
     functions = element.functions(8, parent, coordinates)
     if not element.bubble:

@@ -1,0 +1,81 @@
+"""The external field at the levels of the deformed shell."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from magshell.arrays import FloatArray
+from magshell.equations.term import FieldLost
+from magshell.magnetics.fields import Field, FieldUnknown, MagnetField, Values
+from magshell.magnetics.fields.sources import OUTSIDE
+from magshell.model.course import Loading
+from magshell.shell.body import Reference
+from magshell.shell.positions import level_positions
+from magshell.shell.section import LocalField
+from magshell.shell.state import State
+
+
+class FieldAtLevels:
+    """A field, as the levels of a shell see it.
+
+    Parameters
+    ----------
+    field : Field
+    reference : Reference
+    """
+
+    def __init__(self, field: Field, reference: Reference) -> None:
+        self.field, self._reference = field, reference
+
+    def at(self, state: State, loading: Loading, second: bool = True) -> LocalField:
+        """Flux density and, where it varies, its derivatives; second ones are zero where they are not asked for.
+
+        Raises
+        ------
+        FieldLost
+            The field is not known at a level, or a level is inside a magnet.
+        """
+        if self.field.is_uniform:
+            return self._uniform(loading.flux_density)
+        points = level_positions(self._reference, state)
+        flat = points.reshape(-1, 3)
+        try:
+            values = self.field.at(loading.drives, flat, second)
+        except FieldUnknown as unknown:
+            raise FieldLost(self._nearest(points, unknown), str(unknown)) from None
+        self._check_outside(loading.drives, flat)
+        return self._shaped(values)
+
+    def rate(self, state: State, loading: Loading, rate: Loading) -> LocalField:
+        """Derivative of flux density and gradient along a rate of the loading, at fixed points."""
+        if self.field.is_uniform:
+            return self._uniform(rate.flux_density)
+        points = level_positions(self._reference, state).reshape(-1, 3)
+        return self._shaped(self.field.rate(loading.drives, rate.drives, points))
+
+    def _uniform(self, flux_density: FloatArray) -> LocalField:
+        shape = self._reference.body.levels.shape
+        return LocalField(np.array(np.broadcast_to(flux_density, (1, *shape[1:], 3))), None)
+
+    def _shaped(self, values: Values) -> LocalField:
+        shape, count = self._reference.body.levels.shape, len(values.flux_density)
+        slopes = np.zeros((count, 36))
+        slopes[:, :9] = values.gradient.reshape(count, 9)
+        if values.second is not None:
+            slopes[:, 9:] = values.second.reshape(count, 27)
+        B = np.ascontiguousarray(values.flux_density).reshape(*shape, 3)
+        return LocalField(np.array(B), slopes.reshape(*shape, 36))
+
+    def _check_outside(self, drives: FloatArray, points: FloatArray) -> None:
+        """Refuse a shell that penetrates a magnet."""
+        for part, own in self.field.parts(drives):
+            if isinstance(part, MagnetField):
+                inside = np.flatnonzero(part.containing(own, points) != OUTSIDE)
+                if inside.size:
+                    element = int(inside[0]) // int(np.prod(self._reference.body.levels.shape[1:]))
+                    place = ", ".join(f"{1e3 * x:.4g}" for x in points[inside[0]])
+                    raise FieldLost(element, f"it is inside a magnet of {part.name}, at ({place}) mm")
+
+    def _nearest(self, points: FloatArray, unknown: FieldUnknown) -> int:
+        away = np.linalg.norm(points - unknown.position, axis=-1)
+        return int(np.argmin(np.nan_to_num(away, nan=np.inf).reshape(len(away), -1).min(axis=1)))
