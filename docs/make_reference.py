@@ -84,7 +84,7 @@ KINDS = {
     fields.FluxDensityUnit: "unit of flux density",
     fields.ProbeName: "name",
     fields.Rotation: "list of angles",
-    tuple[fields.PositiveNumber, ...]: "list of numbers in (0, 1], rising",
+    fields.StageStops: "list of numbers in (0, 1], rising, or a whole number",
     fields.Number: "number",
     fields.PositiveNumber: "number > 0",
     fields.Count: "whole number ≥ 1",
@@ -125,7 +125,7 @@ KINDS = {
     dict[fields.Name, fields.PlaneCorner]: "table of points, each two lengths",
     dict[fields.Name, schema.Wall]: "table of walls, see below",
     Folds: "list of folds, see below",
-    tuple[fields.PositiveFluxDensity, ...]: "list of flux densities > 0, rising",
+    fields.FieldStops: "list of flux densities > 0, rising, or a whole number",
     dict[fields.Name, schema.Selection]: "table of selections",
     dict[fields.Name, schema.Block]: "table of blocks",
 }
@@ -379,7 +379,8 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             **HISTORY,
             "rotation_axis": "About which the field turns.",
             "rotation": "Angle by which it is turned at the end of each stage.",
-            "stops": "Magnitudes that the path must hit wherever it passes them; the end is always hit.",
+            "stops": "Magnitudes that the path must hit wherever it passes them; the end is always hit. "
+            "`stops = 20`: 20, evenly spaced.",
             "coupling": "The law that couples field and shell, see the [theory page](theory.md#5-magnetic-coupling).",
             "gradient": "A constant gradient; this and the next are described on the page [Fields](fields.md).",
             "sampled": "A grid, from a file.",
@@ -430,7 +431,8 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "name": "For messages and files.",
             "control": "What is given: the load factor, the length of the path from step to step, or the displacement "
             "of a probe.",
-            "stops": "Load factors of the stage that the path must hit; 1 is always hit.",
+            "stops": "Load factors of the stage that the path must hit; 1 is always hit. `stops = 20`: 20, evenly "
+            "spaced.",
             "probe": "Name of a probe,",
             "component": "the component of its displacement, and",
             "target": "the value at which the stage ends: needed under displacement control; with arc length in place "

@@ -55,6 +55,8 @@ BROKEN = [
     Broken("misspelt unit", '"303 kPa"', '"303 Kpa"', "material.shear_modulus", ("'Kpa'", "'kPa'")),
     Broken("no number", '"303 kPa"', '"soft"', "material.shear_modulus", ("'soft'", "number")),
     Broken("stop in mm", '"1 mT", "2 mT"', '"1 mm", "2 mT"', "field.stops[0]", ("length", "flux density")),
+    Broken("no stops at all", 'stops = ["1 mT", "2 mT"]', "stops = 0", "field.stops", ("'0' is not a whole number from 1",)),
+    Broken("number of stops in mT", 'stops = ["1 mT", "2 mT"]', 'stops = "2 mT"', "field.stops", ("'2 mT' is not a whole number from 1",)),
     # the field
     Broken("field without direction", 'flux_density = [0, 0, "2 mT"]', 'magnitude = "2 mT"', "field.direction", ("is missing beside magnitude",)),
     Broken("field twice", "stops", 'magnitude = "2 mT"\ndirection = [0, 0, 1]\nstops', "field.flux_density", ("beside magnitude",)),

@@ -119,6 +119,8 @@ class ProblemFile(Table):
         "loads[]": "kind",
         "magnets[]": "shape",
         "coils[]": "shape",
+        "field.stops": "",
+        "stages[].stops": "",
         "material": "law",
         "remanence[]": "kind",
         **{f"{place}thickness": "" for place in ("shell.", "shell.layers[].", "regions[].", "regions[].layers[].")},

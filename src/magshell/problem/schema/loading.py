@@ -21,7 +21,7 @@ class FieldTable(Table):
     history: f.History | None = None
     rotation_axis: f.Direction | None = None
     rotation: f.Rotation | None = None
-    stops: tuple[f.PositiveFluxDensity, ...] = ()
+    stops: f.FieldStops = ()
     coupling: f.Coupling = "couple"
     gradient: GradientTable | None = None
     sampled: SampledTable | None = None
@@ -61,10 +61,11 @@ class FieldTable(Table):
     @model_validator(mode="after")
     def _stops_lie_on_the_way(self) -> FieldTable:
         end = math.hypot(*self.vector) * max(map(abs, self.history or (1.0,)))
-        for number, stop in enumerate(self.stops):
+        stops = () if isinstance(self.stops, int) else self.stops
+        for number, stop in enumerate(stops):
             if stop > end * (1.0 + 1e-12):
                 raise key_error(f"stops[{number}]", f"{stop:g} T lies beyond the largest field of the path, {end:g} T")
-            if number and stop <= self.stops[number - 1]:
+            if number and stop <= stops[number - 1]:
                 raise key_error(f"stops[{number}]", "does not exceed the one before; stops must rise")
         return self
 
