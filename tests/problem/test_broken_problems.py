@@ -60,7 +60,7 @@ BROKEN = [
     # the field
     Broken("field without direction", 'flux_density = [0, 0, "2 mT"]', 'magnitude = "2 mT"', "field.direction", ("is missing beside magnitude",)),
     Broken("field twice", "stops", 'magnitude = "2 mT"\ndirection = [0, 0, 1]\nstops', "field.flux_density", ("beside magnitude",)),
-    Broken("field of nothing", 'flux_density = [0, 0, "2 mT"]', "", "field.flux_density", ("is missing; give it, or magnitude and direction",)),
+    Broken("field of nothing", 'flux_density = [0, 0, "2 mT"]\nstops = ["1 mT", "2 mT"]', 'coupling = "couple"', "field.flux_density", ("is missing; give it, or magnitude and direction",)),
     Broken("stop beyond the magnitude", 'flux_density = [0, 0, "2 mT"]', 'magnitude = "1.5 mT"\ndirection = [0, 1, 1]', "field.stops[1]", ("beyond",)),
     # values
     Broken("negative thickness", '"1 mm"\n\n[mat', '"-1 mm"\n\n[mat', "shell.thickness", ("-1 mm", "not positive")),

@@ -158,10 +158,11 @@ class ProblemFile(Table):
     @model_validator(mode="after")
     def _field_is_of_something(self) -> ProblemFile:
         field = self.field
-        if "field" not in self.model_fields_set or "flux_density" in field.model_fields_set or field.varies:
+        given = {"flux_density", "magnitude", "direction"} & field.model_fields_set
+        if "field" not in self.model_fields_set or given or field.varies:
             return self
         if not (self.magnets or self.coils):
-            raise key_error("field.flux_density", "is missing")
+            raise key_error("field.flux_density", "is missing; give it, or magnitude and direction")
         return self
 
     @model_validator(mode="after")

@@ -43,7 +43,7 @@ class FieldTable(Table):
 
     @model_validator(mode="after")
     def _is_given_once(self) -> FieldTable:
-        if self.varies and not {"flux_density", "magnitude", "direction"} & self.model_fields_set:
+        if not {"flux_density", "magnitude", "direction"} & self.model_fields_set:
             return self
         fault = given_once("flux_density", self.flux_density, self.magnitude, self.direction)
         if fault is not None:
