@@ -15,6 +15,7 @@ from magshell.problem.building.field import build_field
 from magshell.problem.reading import check, parse
 from magshell.problem.schema import ProblemFile
 from magshell.problem.source_report import lines
+from problem.with_sources import EVERY, EVERY_SOURCE, GRADIENT, entry
 
 MAGNET = """
 [[magnets]]
@@ -24,22 +25,6 @@ height = "10 mm"
 polarisation = [0, 0, "1.3 T"]
 position = [0, 0, "-30 mm"]
 """
-EVERY = {
-    "cuboid": 'sides = ["20 mm", "10 mm", "5 mm"]\npolarisation = [0, 0, "1.3 T"]',
-    "cylinder": 'diameter = "20 mm"\nheight = "10 mm"\npolarisation = ["100 kA/m", 0, 0]',
-    "ring": 'inner_diameter = "8 mm"\nouter_diameter = "20 mm"\nheight = "10 mm"\npolarisation = [0, 0, "1 T"]',
-    "cylinder-segment": 'inner_diameter = 0\nouter_diameter = "20 mm"\nheight = "10 mm"\n'
-    'angles = ["-45 deg", "90 deg"]\npolarisation = [0, 0, "1 T"]',
-    "sphere": 'diameter = "20 mm"\npolarisation = [0, 0, "1 T"]',
-    "dipole": 'moment = [0, 0, "1.2 A m^2"]',
-    "halbach": 'radius = "50 mm"\ncount = 16\nsides = ["10 mm", "10 mm", "20 mm"]\nremanence = "1.3 T"\norder = 2',
-    "loop": 'diameter = "80 mm"\ncurrent = "2 A"\nturns = 10',
-    "polygon": 'corners = [[0, 0, 0], ["10 mm", 0, 0], [0, "10 mm", 0]]\ncurrent = "2 A"',
-    "solenoid": 'diameter = "20 mm"\nheight = "40 mm"\ncurrent = "2 A"\nturns = 100\nlayers = 2\nspacing = "1 mm"',
-    "rectangular": 'sides = ["20 mm", "30 mm"]\nheight = "5 mm"\ncurrent = "2 A"\nturns = 100',
-    "helmholtz": 'radius = "100 mm"\ncurrent = "2 A"\nturns = 100',
-    "maxwell": 'radius = "100 mm"\ncurrent = "2 A"',
-}
 POINTS = np.array([[0.001, 0.002, 0.003], [0.004, -0.006, 0.01]])
 
 
@@ -49,11 +34,6 @@ def read(*added: str, base: str = STRIP) -> ProblemFile:
 
 def field_of(*added: str, base: str = STRIP, folder=None) -> fields.Field:
     return build_field(read(*added, base=base), folder)
-
-
-def entry(shape: str, more: str = "") -> str:
-    key = "magnets" if shape in MAGNETS else "coils"
-    return f'\n[[{key}]]\nshape = "{shape}"\n{EVERY[shape]}\n{more}\n'
 
 
 WITHOUT = changed(STRIP, ('flux_density = [0, 0, "2 mT"]\nstops = ["1 mT", "2 mT"]\n', ""), ("[field]\n", ""))
@@ -127,11 +107,6 @@ def test_splines() -> None:
     assert ("splines", "spacing 1 mm") in list(lines(read(MAGNET, base=base)))
 
 
-GRADIENT = (
-    '\n[field.gradient]\ntensor = [["1 T/m", 0, 0], [0, "100 G/cm", 0], [0, 0, "-2 T/m"]]\ncentre = ["5 mm", 0, 0]\n'
-)
-
-
 def test_gradient() -> None:
     gradient = field_of(GRADIENT).fields[1]
     assert isinstance(gradient, GradientField)
@@ -155,6 +130,12 @@ def test_grid_and_coil_system(tmp_path) -> None:
     (tmp_path / "coils.csv").write_text("1,2\n3\n")
     with pytest.raises(ms.InputError, match=r"field\.coils: coils\.csv: is not a table of numbers"):
         field_of(coils, folder=tmp_path)
+
+
+def test_all_of_them_together() -> None:
+    field = field_of(base=EVERY_SOURCE)
+    assert len(field.fields) == 4, "the uniform part, those that stand still, those that move, the gradient"
+    assert np.isfinite(field.at(field.ends(2)[2], POINTS + 1.0).flux_density).all()
 
 
 def test_words_of_motion() -> None:
