@@ -110,8 +110,8 @@ def _of_comsol(path: pathlib.Path, length_unit: str) -> tuple[FloatArray, FloatA
     if not rows or any(len(row) != 6 for row in rows):
         found = sorted({len(row) for row in rows})
         raise InputError(
-            f"{path.name}: its rows have {' or '.join(map(str, found)) or 'no'} numbers; they must have six: x, y, z, Bx, "
-            "By, Bz. Export these three expressions on a regular grid in three dimensions"
+            f"{path.name}: its rows have {' or '.join(map(str, found)) or 'no'} numbers; they must have six: x, y, z, "
+            "Bx, By, Bz. Export these three expressions on a regular grid in three dimensions"
         )
     try:
         numbers = np.array(rows, dtype=float)
