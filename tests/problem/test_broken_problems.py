@@ -206,7 +206,7 @@ BROKEN = [
     Broken("shell as text", '[shell]\nthickness = "1 mm"\n', "", "shell", ("not a table", "write [shell]"), 'shell = "1 mm"\n' + STRIP),
     Broken("list of fields", "[field]", "[[field]]", "field", ("one [field] only",)),
     Broken("list of probes", "[probes]", "[[probes]]", "probes", ("one [probes] only", "tip = [")),
-    Broken("magnets", "[probes]", "[[magnets]]\n[probes]", "magnets", ("Did you mean 'remanence'",)),
+    Broken("magnet", "[probes]", "[[magnet]]\n[probes]", "magnet", ("Did you mean 'magnets'",)),
     Broken("contact", "[probes]", "[contact]\n[probes]", "contact", ("there is no contact",)),
     Broken("density of the material", "shear_modulus", "density", "material.density", ("belongs to [shell]",)),
     Broken("fixed", '"clamp"', '"fixed"', "supports[0].kind", ("'fixed'", "Did you mean 'clamp'")),

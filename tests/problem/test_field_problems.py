@@ -182,7 +182,7 @@ def test_the_model_refuses_it_for_now(tmp_path, capsys) -> None:
         (entry("loop").replace('"2 A"', '"0 A"'), "coils[0].current", "is zero; leave the table out"),
         (entry("loop").replace('"2 A"', '"2 T"'), "coils[0].current", "is a magnetic flux density where a current is"),
         (entry("polygon").replace(', [0, "10 mm", 0]]', "]"), "coils[0].corners", "has 2 entries; expected three"),
-        (entry("dipole").replace("A m^2", "A m"), "magnets[0].moment[2]", "has the unknown unit 'A m'; did you mean"),
+        (entry("dipole").replace("A m^2", "A m"), "magnets[0].moment[2]", "has the unknown unit 'A m'"),
         (GRADIENT.replace('"1 T/m"', '"1 T"'), "field.gradient.tensor[0][0]", "is a magnetic flux density where a"),
         (GRADIENT.replace("tensor", "matrix"), "field.gradient.matrix", "is an unknown key"),
     ],
