@@ -12,6 +12,7 @@ from magshell.magnetics import fields
 from magshell.magnetics.fields import COILS, MAGNETS, FieldSum, GradientField, MagnetField, SampledField, UniformField
 from magshell.problem.building import build
 from magshell.problem.building.field import build_field
+from magshell.problem.building.located import at
 from magshell.problem.reading import check, parse
 from magshell.problem.schema import ProblemFile
 from magshell.problem.source_report import lines
@@ -214,6 +215,15 @@ def test_refused_by_the_tables(text: str, where: str, what: str) -> None:
 def test_refused_when_built(text: str, message: str, tmp_path) -> None:
     with pytest.raises(ms.InputError, match=message):
         field_of(text, folder=tmp_path)
+
+
+def test_a_point_without_field_keeps_its_kind_when_it_is_located() -> None:
+    field = field_of(entry("sphere"), base=WITHOUT)
+    with (
+        pytest.raises(fields.FieldUnknown, match=r"test\.toml: magnets: the point \(0, 0, 0\.01\) m is on the surface"),
+        at("test.toml"),
+    ):
+        field.at(field.ends(1)[1], np.array([[0.0, 0.0, 0.01]]))
 
 
 def test_an_empty_field_table() -> None:
