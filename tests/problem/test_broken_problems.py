@@ -209,6 +209,7 @@ BROKEN = [
     Broken("list of fields", "[field]", "[[field]]", "field", ("one [field] only",)),
     Broken("list of probes", "[probes]", "[[probes]]", "probes", ("one [probes] only", "tip = [")),
     Broken("magnetisation", "[probes]", "[[magnetisation]]\n[probes]", "magnetisation", ("Did you mean 'remanence'",)),
+    Broken("magnet", "[probes]", "[[magnet]]\n[probes]", "magnet", ("Did you mean 'magnets'",)),
     Broken("contact", "[probes]", "[contact]\n[probes]", "contact", ("there is no contact",)),
     Broken("density of the material", "shear_modulus", "density", "material.density", ("belongs to [shell]",)),
     Broken("fixed", '"clamp"', '"fixed"', "supports[0].kind", ("'fixed'", "Did you mean 'clamp'")),

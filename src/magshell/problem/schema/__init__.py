@@ -157,12 +157,9 @@ class ProblemFile(Table):
 
     @model_validator(mode="after")
     def _field_is_of_something(self) -> ProblemFile:
-        field = self.field
-        given = {"flux_density", "magnitude", "direction"} & field.model_fields_set
-        if "field" not in self.model_fields_set or given or field.varies:
-            return self
-        if not (self.magnets or self.coils):
-            raise key_error("field.flux_density", "is missing; give it, or magnitude and direction")
+        fault = self.field.uniform_fault
+        if "field" in self.model_fields_set and fault and not (self.field.varies or self.magnets or self.coils):
+            raise key_error(f"field.{fault[0]}", fault[1])
         return self
 
     @model_validator(mode="after")

@@ -34,6 +34,11 @@ class FieldTable(Table):
         return any(part is not None for part in (self.gradient, self.sampled, self.coils))
 
     @property
+    def uniform_fault(self) -> tuple[str, str] | None:
+        """Key and fault of the uniform part; that it is missing matters where nothing else makes a field."""
+        return given_once("flux_density", self.flux_density, self.magnitude, self.direction)
+
+    @property
     def vector(self) -> tuple[float, float, float]:
         """The flux density at multiplier 1, T, however it is given."""
         if self.magnitude is None or self.direction is None:
@@ -43,11 +48,8 @@ class FieldTable(Table):
 
     @model_validator(mode="after")
     def _is_given_once(self) -> FieldTable:
-        if not {"flux_density", "magnitude", "direction"} & self.model_fields_set:
-            return self
-        fault = given_once("flux_density", self.flux_density, self.magnitude, self.direction)
-        if fault is not None:
-            raise key_error(*fault)
+        if self.uniform_fault is not None and {"flux_density", "magnitude", "direction"} & self.model_fields_set:
+            raise key_error(*self.uniform_fault)
         return self
 
     @model_validator(mode="after")
