@@ -95,7 +95,6 @@ def film(path: Path, steps: Sequence[Step], color: str, dpi: int = DPI) -> Itera
     from PIL import Image as images
 
     output, component = find(color)
-    mesh = path.discretisation.mesh
     skin = skin_of(path.model.shell)
     shown = shown_values(path, steps, output, component, skin)
     values = {step.number: each for step, each in zip(steps, shown, strict=True)}
@@ -110,7 +109,7 @@ def film(path: Path, steps: Sequence[Step], color: str, dpi: int = DPI) -> Itera
             rgb = colours.to_rgba(values[step.number], bytes=True)[:, :3]
             arrow = arrows[step.number]
             placed = skin.placed(converged(path.discretisation, step))
-            scene = expose(deformed(mesh, placed, rgb, arrow, camera))
+            scene = expose(deformed(path.model.shell, placed, rgb, arrow, camera))
             whole = images.new("RGBA", front.size, "white")
             whole.alpha_composite(images.fromarray(scene), (0, front.height - shape[1]))
             whole.alpha_composite(front)
