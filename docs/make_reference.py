@@ -604,7 +604,7 @@ def pages() -> dict[pathlib.Path, dict[str, str]]:
 def outputs_table() -> str:
     """What a result holds."""
     rows = ["| Name | Symbol | Unit | Of each | In files | What it is |", "|---|---|---|---|---|---|"]
-    where = {"point": "node", "patch": "node and patch", "cell": "element"}
+    where = {"point": "node", "sheet": "node and sheet", "patch": "node and patch", "cell": "element"}
     families: dict[str, list[Output]] = {}
     for output in OUTPUTS.values():
         families.setdefault(output.name.removesuffix(f"_{output.face}"), []).append(output)
