@@ -18,6 +18,7 @@ from magshell.magnetics.deformation_gradient_energy import DeformationGradientEn
 from magshell.magnetics.fields.uniform import UniformField
 from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.model import coupling_limit, doubts, symmetry
+from magshell.model.constraints import Constraints, resolve
 from magshell.model.course import Amounts, Course, Loading
 from magshell.model.loads import Applied, Load
 from magshell.model.loads.mass import Mass, whole_mass
@@ -29,7 +30,9 @@ from magshell.model.rows import Rows, rows_of
 from magshell.model.shell import Shell
 from magshell.model.springs import Anchored, Spring, check_names, reaction_name
 from magshell.model.stages import Stage
-from magshell.model.supports import Constraints, Support, SymmetryPlane, resolve, turned_bodies
+from magshell.model.support import Support
+from magshell.model.supports import SymmetryPlane
+from magshell.model.turn import turned_bodies
 from magshell.multipliers import amplitudes
 from magshell.shell.state import State
 

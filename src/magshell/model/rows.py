@@ -20,11 +20,12 @@ import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.errors import InputError
+from magshell.model.constraints import FRAME_OF_FIELD, Constraints
 from magshell.model.reflection import in_mirror_planes
 from magshell.model.rigid_body import RigidBody, members_of
 from magshell.model.sheets import Sheets, sheets_of
 from magshell.model.shell import Shell
-from magshell.model.supports import FRAME_OF_FIELD, Constraints, SymmetryPlane
+from magshell.model.supports import SymmetryPlane
 from magshell.shell.normals import corner_normals
 from magshell.shell.ties import FREE, RIGID, STRETCHED, TURNED
 from magshell.shell.unknowns import COLUMNS, COMPONENTS

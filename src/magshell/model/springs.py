@@ -29,7 +29,7 @@ from magshell.model.loads.distribution import Products, centroid_weights, produc
 from magshell.model.loads.load import Applied, Pairs
 from magshell.model.places import Places
 from magshell.model.shell import Shell
-from magshell.model.supports import REACTION
+from magshell.model.support import REACTION
 from magshell.shell.state import State
 from magshell.units import AREA_STIFFNESS, LINE_STIFFNESS, STIFFNESS, Dimension, show
 from magshell.wording import counted, vector

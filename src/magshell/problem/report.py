@@ -17,7 +17,8 @@ from magshell.model import symmetry
 from magshell.model.doubts.figures import Figures, Whole, figures_of
 from magshell.model.doubts.loads import strength
 from magshell.model.springs import Spring
-from magshell.model.supports import Support, SymmetryPlane
+from magshell.model.support import Support
+from magshell.model.supports import SymmetryPlane
 from magshell.model.words import offset_of, span
 from magshell.problem import (
     fields,

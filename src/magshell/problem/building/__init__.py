@@ -16,7 +16,8 @@ from magshell.model.model import Model
 from magshell.model.shell import Shell
 from magshell.model.springs import SPRINGS, Spring
 from magshell.model.stages import Stage
-from magshell.model.supports import SUPPORTS, Support
+from magshell.model.support import Support
+from magshell.model.supports import SUPPORTS
 from magshell.problem import schema
 from magshell.problem.building.field import build_field
 from magshell.problem.building.located import at
