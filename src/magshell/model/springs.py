@@ -81,7 +81,7 @@ class Spring:
 
     kind: ClassVar[str] = "translation"
     keys: ClassVar[Mapping[str, Key]] = {
-        "group": Key("Name", "Group of nodes, edges or elements that the springs hold."),
+        "group": Key("Name", "Group of nodes, edges or elements that the springs hold, or the name of a rigid body."),
         "stiffness": Key("Stiffness", "Of all springs together.", "one of the three is needed"),
         "per_length": Key("LineStiffness", "Per undeformed length of a group of edges.", "one of the three is needed"),
         "per_area": Key("AreaStiffness", "Per undeformed area of a group of elements.", "one of the three is needed"),

@@ -14,7 +14,7 @@ from magshell.arrays import FloatArray
 from magshell.errors import InputError
 from magshell.keys import Key
 
-GROUP = Key("Name", "Group of edges, nodes or elements whose nodes are held.")
+GROUP = Key("Name", "Group of edges, nodes or elements whose nodes are held, or the name of a rigid body.")
 REACTION = {
     "name": Key("Name", "Of the reaction in the results; supports of one name have one reaction.", "the group"),
     "point": Key("Position", "Point, fixed in space, that the reaction's moment is about.", "the support's centroid"),
