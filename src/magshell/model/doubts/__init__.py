@@ -87,18 +87,19 @@ def _of_field(model: Asked, figures: Whole) -> Iterator[str]:
     strongest = max(float(np.linalg.norm(part.remanence, axis=-1).max()) for part in model.shell.parts)
     if strongest > KEPT:
         yield f"the remanence is {show(strongest, FLUX_DENSITY)}: more than any magnet keeps"
+    magnets = any(np.any(body.moment) for body in model.shell.rigid)
     if figures.field and not figures.strongest and model.shell.magnetised:
         yield "the remanence of the layers has no mean: the undeformed shape feels no couple"
-    elif figures.field and not figures.strongest:
+    elif figures.field and not figures.strongest and not magnets:
         yield "there is a field but no remanence: the field does nothing"
-    elif figures.field and figures.couple < 1e-9 * figures.field * figures.strongest:
+    elif figures.field and not magnets and figures.couple < 1e-9 * figures.field * figures.strongest:
         alone = not model.loads and not np.any(model.constraints.values)
         stays = ", so it stays as it is" if alone else ""
         yield (
             f"the field is parallel to the remanence everywhere: the undeformed shape feels no couple{stays}. Where it "
             "should buckle, try magshell buckling, or tilt the field by 1\u00b0"
         )
-    elif figures.field and figures.bending_load < STILL:
+    elif figures.field and not magnets and figures.bending_load < STILL:
         yield (
             f"the bending load is {figures.bending_load:.2g}: the field turns the end of a strip of this length by "
             f"{show(0.5 * figures.bending_load, ANGLE, 2)}, so the shell will hardly move; check the units, such as "
