@@ -71,8 +71,8 @@ def resolve(places: Places, supports: Supports, stages: int = 1) -> Constraints:
                 members = _off_bodies(places, owner, members, support, supports)
             if condition.field != "u":
                 carries = carriers[condition.field][members]
-                if not carries.any() and not condition.optional:
-                    _refuse_absent(places, members, condition)
+                if not condition.optional:
+                    _check_carried(places, members, condition)
                 members = members[carries]
             value = condition.value * amplitudes(condition.history, stages, f"support on '{condition.group}'")
             for node in members:
@@ -115,16 +115,23 @@ def _off_bodies(places: Places, owner: IntArray, members: IntArray, support: Sup
     return members[inside < 0]
 
 
-def _refuse_absent(places: Places, members: IntArray, condition: Condition) -> None:
-    """Say why a field is not there."""
+def _check_carried(places: Places, members: IntArray, condition: Condition) -> None:
+    """Refuse a field that no node of a support carries, or the director where a rotation carries it."""
     field, where = condition.field, f"support on '{condition.group}'"
+    carries = places.carriers[field][members]
+    at_joints = members[~carries & places.carriers["omega"][members]] if field == "w" else members[:0]
+    if carries.any() and not at_joints.size:
+        return
     if members[0] >= len(places.mesh.points):
         raise InputError(f"{where}: a rigid body has no '{field}', only u and omega")
     if not places.carriers[field].any():
         raise InputError(f"{where}: no node of this shell carries '{field}'")
-    joint = field == "w" and places.carriers["omega"][members[0]]
-    why = "is at a joint, where directors turn with omega," if joint else "is a mid-side node"
-    raise InputError(f"{where}: node {members[0]} {why} and does not carry '{field}'")
+    if at_joints.size:
+        raise InputError(
+            f"{where}: node {at_joints[0]} is at a joint, whose directors turn with omega, and does not carry "
+            f"'{field}'; hold omega"
+        )
+    raise InputError(f"{where}: node {members[0]} is a mid-side node and does not carry '{field}'")
 
 
 def _orthonormal(

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from magshell.arrays import IntArray
 from magshell.errors import InputError, suggest
 from magshell.mesh import Mesh
@@ -31,8 +33,8 @@ class Hinge:
     stiffness: float = 0.0
 
     def __post_init__(self) -> None:
-        if not 0.0 <= float(self.stiffness) < float("inf"):
-            raise InputError(f"{self.label}: stiffness is {self.stiffness!r}; it must be 0 or positive")
+        if not isinstance(self.stiffness, int | float | np.number) or not 0.0 <= self.stiffness < np.inf:
+            raise InputError(f"{self.label}: stiffness is {self.stiffness!r}; it must be a number, 0 or positive")
 
     @property
     def label(self) -> str:

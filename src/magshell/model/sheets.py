@@ -63,6 +63,9 @@ def sheets_of(mesh: Mesh, hinges: Sequence[Hinge]) -> Sheets:
     hinged, sprung = np.zeros(len(edges.first_side), dtype=bool), np.zeros(count, dtype=bool)
     for hinge in hinges:
         numbers = _edges_of(mesh, hinge, edges.sides[edges.first_side], edges.sharing)
+        if hinged[numbers].any():
+            one, other = edges.sides[edges.first_side[numbers[np.argmax(hinged[numbers])]], :2]
+            raise InputError(f"{hinge.label}: the edge between nodes {one} and {other} is of another hinge too")
         hinged[numbers] = True
         nodes = edges.sides[edges.first_side[numbers]].ravel()
         special[nodes] = True

@@ -90,7 +90,10 @@ class Turn(Support):
 
     def body(self) -> RigidBody:
         """The rigid body that its group becomes."""
-        return RigidBody(self.group, point=self.through)
+        through = None if self.through is None else numbers(self.group, "through", self.through)
+        if through is not None and (through.shape != (3,) or not np.all(np.isfinite(through))):
+            raise InputError(f"support on '{self.group}': through is {self.through!r}; it needs 3 finite coordinates")
+        return RigidBody(self.group, point=through)
 
 
 def turned_bodies(bodies: Sequence[RigidBody], supports: Sequence[Support]) -> tuple[RigidBody, ...]:

@@ -10,7 +10,7 @@ from magshell.magnetics.remanence.sampled import averaged
 from magshell.mesh.geometry import centres
 from magshell.mesh.quality import worst
 from magshell.model import coupling_limit, symmetry
-from magshell.model.doubts import loads, parts, triangles
+from magshell.model.doubts import loads, parts, rotations, triangles
 from magshell.model.doubts.asked import Asked
 from magshell.model.doubts.figures import Figures, Whole, figures_of
 from magshell.model.shell import Shell
@@ -41,6 +41,7 @@ def _doubts(model: Asked) -> Iterator[str]:
     yield from coupling_limit.reached(shell, model.coupling, model.largest_field)
     yield from _of_places(shell)
     yield from loads.doubts(model, loads.strength(model, figures))
+    yield from rotations.doubts(model)
     yield from symmetry.broken(model)
     if model.constraints.fixed[:, :3].all():
         yield "the supports hold every node: the displacement is given everywhere, nothing is left to move"
