@@ -57,6 +57,9 @@ KINDS = {
     fields.Stiffness: "stiffness > 0",
     fields.LineStiffness: "stiffness per length > 0",
     fields.AreaStiffness: "stiffness per area > 0",
+    fields.AngularStiffness: "torsional stiffness > 0",
+    fields.HingeStiffness: "torsional stiffness per length > 0",
+    fields.PositiveMass: "mass > 0",
     fields.NonNegativeStress: "stress ≥ 0",
     fields.PositiveStress: "stress > 0",
     fields.Stress: "stress",
@@ -425,6 +428,23 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "centre": "Of the calibration.",
         },
     ),
+    "rigid": (
+        schema.RigidTable,
+        {
+            "group": "Group of nodes, edges or elements; no node belongs to two bodies.",
+            "name": "By which supports, loads and springs name it, and its columns of the history.",
+            "point": "Reference point: the body's displacement is that of this point, and forces act on it.",
+            "moment": "Magnetic dipole moment in the undeformed shell; it turns with the body.",
+            "mass": "At the reference point; gravity acts on it.",
+        },
+    ),
+    "hinge": (
+        schema.HingeTable,
+        {
+            "group": "Group of edges, each shared by two or more elements.",
+            "stiffness": "Of a torsion spring, per length of the edge; it resists a change of the angle.",
+        },
+    ),
     "stage": (
         schema.StageTable,
         {
@@ -478,6 +498,8 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "loads": "Mechanical loads.",
             "supports": "What holds the shell.",
             "springs": "Elastic supports.",
+            "rigid": "Groups that move as rigid bodies.",
+            "hinges": "Edges along which sheets may turn against each other.",
             "stages": "Parts of the load path, in sequence; left out: one, or as many as the longest history has.",
             "probes": "Nodes to follow: a name and the reference position.",
             "results": "Axes of tensors, and what files hold beside the usual.",
@@ -537,6 +559,8 @@ TOP = {
     "loads": "list of tables",
     "supports": "list of tables, at least one",
     "springs": "list of tables",
+    "rigid": "list of tables",
+    "hinges": "list of tables",
     "stages": "list of tables",
     "probes": "table of positions",
 }
@@ -562,6 +586,9 @@ OTHERWISE = {
         for key in ("thickness", "material", "remanence", "density", "offset", "levels")
     },
     ("layer", "density"): "that of the region",
+    ("rigid", "name"): "the group",
+    ("rigid", "point"): "the centroid of the group's nodes",
+    ("hinge", "stiffness"): "it turns freely",
     ("file", "results"): "see below",
     ("file", "solver"): "see below",
 }

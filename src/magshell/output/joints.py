@@ -212,7 +212,7 @@ def _found(shell: Shell) -> Joints:
             poles.ravel()[group], mitred.ravel()[group], upside.ravel()[group] = pieces.ravel()[group[0]], True, turned
             terms.append(made)
     empty = np.empty(0, dtype=np.int64)
-    terms.append(Terms(empty, empty, empty, empty > 0, 1.0 * empty))
+    terms.append(Terms(empty, empty, empty, empty > 0, np.empty(0)))
     whole = [np.concatenate(each) for each in zip(*terms, strict=True)]
     order = np.argsort(whole[0], kind="stable")
     return Joints(

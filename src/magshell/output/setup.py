@@ -19,7 +19,9 @@ from magshell.model.words import name_of, thickness_of
 from magshell.output.joints import joints_of
 from magshell.output.marks import (
     Mark,
+    body_marks,
     field_marks,
+    hinge_marks,
     load_marks,
     probe_marks,
     remanence_marks,
@@ -154,7 +156,12 @@ def setup_scene(model: Model, pixels: tuple[int, int], template: bool = False, b
     marks = remanence_marks(model, shown, axes, template)
     if not (template or bare):
         marks += [*field_marks(model, extent, axes), *load_marks(model, size, axes)]
-        marks += [*support_marks(model, size, axes), *spring_marks(model, size, axes), *probe_marks(model, size, axes)]
+        marks += [*support_marks(model, size, axes), *spring_marks(model, size, axes)]
+        marks += [
+            *hinge_marks(model, size, axes),
+            *body_marks(model, size, axes),
+            *probe_marks(model, size, axes),
+        ]
     kept = np.concatenate([extent, *(mark.extent for mark in marks)])
     camera = fit(kept, axes, pixels[0] / pixels[1])
 

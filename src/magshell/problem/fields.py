@@ -241,6 +241,9 @@ FluxGradient = Annotated[float, _quantity(units.FLUX_GRADIENT)]
 AnyCurrent = Annotated[float, _quantity(units.CURRENT)]
 Current = Annotated[float, _quantity(units.CURRENT), AfterValidator(_not_zero)]
 DipoleMoment = Annotated[float, _quantity(units.MAGNETIC_MOMENT)]
+AngularStiffness = Annotated[float, _positive_quantity(units.ANGULAR_STIFFNESS)]
+HingeStiffness = Annotated[float, _positive_quantity(units.HINGE_STIFFNESS)]
+PositiveMass = Annotated[float, _positive_quantity(units.MASS)]
 Acceleration = Annotated[float, _quantity(units.ACCELERATION)]
 PositiveDensity = Annotated[float, _positive_quantity(units.DENSITY)]
 Angle = Annotated[float, _quantity(units.ANGLE)]
@@ -301,7 +304,7 @@ Polarisation = Annotated[
 ]
 MagneticMoment = Annotated[
     tuple[DipoleMoment, DipoleMoment, DipoleMoment],
-    _list_of(3, "components of the magnetic moment along the dipole's own axes"),
+    _list_of(3, "components of the magnetic moment"),
     AfterValidator(_nonzero),
 ]
 Sides = Annotated[tuple[PositiveLength, PositiveLength, PositiveLength], _list_of(3, "lengths along its own axes")]

@@ -20,6 +20,7 @@ from magshell.model.springs import SPRINGS
 from magshell.model.supports import SUPPORTS
 from magshell.problem import fields as f
 from magshell.problem.schema.described import table_of
+from magshell.problem.schema.joints import HingeTable, RigidTable
 from magshell.problem.schema.loading import FieldTable, LoadTable, SpringTable, SupportTable
 from magshell.problem.schema.material import MaterialTable
 from magshell.problem.schema.mesh import (
@@ -67,6 +68,7 @@ __all__ = [
     "FieldTable",
     "FoldTable",
     "GradientTable",
+    "HingeTable",
     "LayerTable",
     "LoadTable",
     "MagnetTable",
@@ -82,6 +84,7 @@ __all__ = [
     "RegionTable",
     "RemanenceTable",
     "ResultsTable",
+    "RigidTable",
     "Round",
     "SampledTable",
     "Selection",
@@ -144,6 +147,8 @@ class ProblemFile(Table):
     loads: tuple[LoadTable, ...] = ()
     supports: tuple[SupportTable, ...] = ()
     springs: tuple[SpringTable, ...] = ()
+    rigid: tuple[RigidTable, ...] = ()
+    hinges: tuple[HingeTable, ...] = ()
     stages: tuple[StageTable, ...] = ()
     probes: dict[f.ProbeName, f.Position] = {}
     results: ResultsTable = ResultsTable()
