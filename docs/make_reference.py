@@ -57,6 +57,9 @@ KINDS = {
     fields.Stiffness: "stiffness > 0",
     fields.LineStiffness: "stiffness per length > 0",
     fields.AreaStiffness: "stiffness per area > 0",
+    fields.AngularStiffness: "torsional stiffness > 0",
+    fields.HingeStiffness: "torsional stiffness per length > 0",
+    fields.PositiveMass: "mass > 0",
     fields.NonNegativeStress: "stress ≥ 0",
     fields.PositiveStress: "stress > 0",
     fields.Stress: "stress",
@@ -84,7 +87,7 @@ KINDS = {
     fields.FluxDensityUnit: "unit of flux density",
     fields.ProbeName: "name",
     fields.Rotation: "list of angles",
-    tuple[fields.PositiveNumber, ...]: "list of numbers in (0, 1], rising",
+    fields.StageStops: "list of numbers in (0, 1], rising, or a whole number",
     fields.Number: "number",
     fields.PositiveNumber: "number > 0",
     fields.Count: "whole number ≥ 1",
@@ -125,7 +128,7 @@ KINDS = {
     dict[fields.Name, fields.PlaneCorner]: "table of points, each two lengths",
     dict[fields.Name, schema.Wall]: "table of walls, see below",
     Folds: "list of folds, see below",
-    tuple[fields.PositiveFluxDensity, ...]: "list of flux densities > 0, rising",
+    fields.FieldStops: "list of flux densities > 0, rising, or a whole number",
     dict[fields.Name, schema.Selection]: "table of selections",
     dict[fields.Name, schema.Block]: "table of blocks",
 }
@@ -379,7 +382,8 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             **HISTORY,
             "rotation_axis": "About which the field turns.",
             "rotation": "Angle by which it is turned at the end of each stage.",
-            "stops": "Magnitudes that the path must hit wherever it passes them; the end is always hit.",
+            "stops": "Magnitudes that the path must hit wherever it passes them; the end is always hit. "
+            "`stops = 20`: 20, evenly spaced.",
             "coupling": "The law that couples field and shell, see the [theory page](theory.md#5-magnetic-coupling).",
             "gradient": "A constant gradient; this and the next are described on the page [Fields](fields.md).",
             "sampled": "A grid, from a file.",
@@ -424,13 +428,31 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "centre": "Of the calibration.",
         },
     ),
+    "rigid": (
+        schema.RigidTable,
+        {
+            "group": "Group of nodes, edges or elements; no node belongs to two bodies.",
+            "name": "By which supports, loads and springs name it, and its columns of the history.",
+            "point": "Reference point: the body's displacement is that of this point, and forces act on it.",
+            "moment": "Magnetic dipole moment in the undeformed shell; it turns with the body.",
+            "mass": "At the reference point; gravity acts on it.",
+        },
+    ),
+    "hinge": (
+        schema.HingeTable,
+        {
+            "group": "Group of edges, each shared by two or more elements.",
+            "stiffness": "Of a torsion spring, per length of the edge; it resists a change of the angle.",
+        },
+    ),
     "stage": (
         schema.StageTable,
         {
             "name": "For messages and files.",
             "control": "What is given: the load factor, the length of the path from step to step, or the displacement "
             "of a probe.",
-            "stops": "Load factors of the stage that the path must hit; 1 is always hit.",
+            "stops": "Load factors of the stage that the path must hit; 1 is always hit. `stops = 20`: 20, evenly "
+            "spaced.",
             "probe": "Name of a probe,",
             "component": "the component of its displacement, and",
             "target": "the value at which the stage ends: needed under displacement control; with arc length in place "
@@ -476,6 +498,8 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "loads": "Mechanical loads.",
             "supports": "What holds the shell.",
             "springs": "Elastic supports.",
+            "rigid": "Groups that move as rigid bodies.",
+            "hinges": "Edges along which sheets may turn against each other.",
             "stages": "Parts of the load path, in sequence; left out: one, or as many as the longest history has.",
             "probes": "Nodes to follow: a name and the reference position.",
             "results": "Axes of tensors, and what files hold beside the usual.",
@@ -535,6 +559,8 @@ TOP = {
     "loads": "list of tables",
     "supports": "list of tables, at least one",
     "springs": "list of tables",
+    "rigid": "list of tables",
+    "hinges": "list of tables",
     "stages": "list of tables",
     "probes": "table of positions",
 }
@@ -560,6 +586,9 @@ OTHERWISE = {
         for key in ("thickness", "material", "remanence", "density", "offset", "levels")
     },
     ("layer", "density"): "that of the region",
+    ("rigid", "name"): "the group",
+    ("rigid", "point"): "the centroid of the group's nodes",
+    ("hinge", "stiffness"): "it turns freely",
     ("file", "results"): "see below",
     ("file", "solver"): "see below",
 }
@@ -602,7 +631,7 @@ def pages() -> dict[pathlib.Path, dict[str, str]]:
 def outputs_table() -> str:
     """What a result holds."""
     rows = ["| Name | Symbol | Unit | Of each | In files | What it is |", "|---|---|---|---|---|---|"]
-    where = {"point": "node", "patch": "node and patch", "cell": "element"}
+    where = {"point": "node", "sheet": "node and sheet", "patch": "node and patch", "cell": "element"}
     families: dict[str, list[Output]] = {}
     for output in OUTPUTS.values():
         families.setdefault(output.name.removesuffix(f"_{output.face}"), []).append(output)

@@ -22,11 +22,11 @@ from magshell.equations.instant import Increment
 from magshell.evaluation.converged import Converged
 from magshell.magnetics import UniformField, remanence
 from magshell.mesh import Mesh, rectangle, split
+from magshell.model.constraints import resolve
 from magshell.model.course import Loading
 from magshell.model.places import Places
 from magshell.model.rows import rows_of
 from magshell.model.shell import Shell
-from magshell.model.supports import resolve
 from magshell.shell.elements import ELEMENTS, QUADRATIC
 from magshell.shell.point import INTERNAL
 from magshell.shell.state import State

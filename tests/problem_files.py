@@ -121,6 +121,58 @@ elements = [1, 1]
     ),
     ('[probes]\ntip = ["20 mm", 0, 0]\n', ""),
 )
+JOINTED = changed(
+    with_mesh(
+        STRIP,
+        """[mesh]
+generator = "profile"
+length = "5 mm"
+axis = [0, 1, 0]
+first = [1, 0, 0]
+elements = [2, 1]
+
+[mesh.points]
+left = [0, 0]
+fold = ["10 mm", 0]
+right = ["20 mm", 0]
+
+[mesh.walls]
+one = { between = ["left", "fold"] }
+two = { between = ["fold", "right"] }
+
+[[rigid]]
+group = "right"
+name = "magnet"
+moment = ["0.5 mA m^2", 0, 0]
+mass = "1 g"
+
+[[hinges]]
+group = "fold"
+stiffness = "20 mN/rad"
+
+""",
+    ),
+    (
+        '[[supports]]\nkind = "clamp"\ngroup = "left"\n',
+        """[[supports]]
+kind = "turn"
+group = "left"
+axis = [0, 1, 0]
+angle = "10 deg"
+
+[[springs]]
+kind = "translation"
+group = "magnet"
+stiffness = "1 N/m"
+
+[[loads]]
+kind = "gravity"
+group = "magnet"
+acceleration = [0, 0, "-9.81 m/s^2"]
+
+""",
+    ),
+)
 _MAGNETIC = STRIP[STRIP.index("[[remanence]]") : STRIP.index("[[supports]]")]
 LOADED = changed(
     STRIP,

@@ -16,9 +16,9 @@ from element_study.cases import built_in, moved
 from magshell.equations.discretisation import Discretisation
 from magshell.equations.instant import Instant
 from magshell.mesh import Mesh
+from magshell.model.constraints import resolve
 from magshell.model.course import Loading
 from magshell.model.loads import Force
-from magshell.model.supports import resolve
 from magshell.shell import body as shell_body
 from magshell.shell import geometry
 from magshell.shell.elements import PAPER, QUADRATIC, ElementType

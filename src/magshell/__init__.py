@@ -49,7 +49,8 @@ if TYPE_CHECKING:
     from magshell.model.shell import Shell
     from magshell.model.springs import Spring
     from magshell.model.stages import Stage
-    from magshell.model.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane, Turn
+    from magshell.model.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane
+    from magshell.model.turn import Turn
     from magshell.solver import CriticalPoint, Observer, Path, Settings, SolveError, Step, resume, solve
     from magshell.solver.buckling import Buckling, BucklingMode, buckling
 

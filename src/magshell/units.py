@@ -121,6 +121,30 @@ AREA_STIFFNESS = _dimension(
     {"N/m^3": "1", "N/mm^3": "1e9", "Pa/m": "1", "kPa/mm": "1e6", "kPa/m": "1e3"},
     {"N/mm^3": 1e8, "kPa/mm": 1e5, "N/m^3": 0.0},
 )
+ANGULAR_STIFFNESS = _dimension(
+    "torsional stiffness",
+    {
+        "N m/rad": "1",
+        "N mm/rad": "1e-3",
+        "mN m/rad": "1e-3",
+        "mN mm/rad": "1e-6",
+        "uN m/rad": "1e-6",
+        "µN m/rad": "1e-6",
+    },
+    {"N m/rad": 1.0, "N mm/rad": 1e-6, "uN m/rad": 0.0},
+)
+HINGE_STIFFNESS = _dimension(
+    "torsional stiffness per length",
+    {
+        "N/rad": "1",
+        "mN/rad": "1e-3",
+        "N m/rad/m": "1",
+        "N mm/rad/mm": "1",
+        "mN mm/rad/mm": "1e-3",
+        "N mm/rad/m": "1e-3",
+    },
+    {"N/rad": 0.1, "mN/rad": 0.0},
+)
 DENSITY = _dimension("density", {"kg/m^3": "1", "g/cm^3": "1e3"}, {"kg/m^3": 0.0})
 MASS = _dimension("mass", {"kg": "1", "g": "1e-3", "mg": "1e-6"}, {"kg": 1.0, "g": 1e-4, "mg": 0.0})
 CURRENT = _dimension("current", {"A": "1", "mA": "1e-3", "kA": "1e3"}, {"kA": 1e3, "A": 1.0, "mA": 0.0})
@@ -147,7 +171,10 @@ QUANTITIES = (
     STIFFNESS,
     LINE_STIFFNESS,
     AREA_STIFFNESS,
+    ANGULAR_STIFFNESS,
+    HINGE_STIFFNESS,
     DENSITY,
+    MASS,
     CURRENT,
     MAGNETIC_MOMENT,
     FLUX_GRADIENT,

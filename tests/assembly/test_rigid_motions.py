@@ -10,9 +10,10 @@ from scipy.spatial.transform import Rotation
 import magshell as ms
 from magshell.errors import InputError
 from magshell.mesh import Mesh, rectangle
+from magshell.model.constraints import resolve
 from magshell.model.places import Places
 from magshell.model.rigid import free_motions
-from magshell.model.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane, resolve
+from magshell.model.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane
 from magshell.shell.elements import QUADRATIC
 
 

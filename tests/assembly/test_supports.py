@@ -10,8 +10,9 @@ from scipy.spatial.transform import Rotation
 import magshell as ms
 from magshell.errors import InputError
 from magshell.mesh import rectangle
+from magshell.model.constraints import resolve
 from magshell.model.places import Places
-from magshell.model.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane, resolve
+from magshell.model.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane
 from magshell.shell.elements import PAPER, QUADRATIC
 
 U, W, PHI, OMEGA = slice(0, 3), slice(3, 6), 6, slice(7, 10)

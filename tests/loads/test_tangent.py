@@ -19,7 +19,7 @@ from magshell.equations.discretisation import Discretisation
 from magshell.equations.instant import Instant
 from magshell.keys import Key
 from magshell.linalg import make_solver, nested_dissection
-from magshell.model.supports import Condition, Support
+from magshell.model.support import Condition, Support
 from magshell.shell.state import State
 from magshell.solver.newton import System, Trial, newton
 

@@ -14,12 +14,12 @@ from magshell.arrays import FloatArray
 from magshell.equations.instant import Instant
 from magshell.equations.loads import NodalTerm
 from magshell.magnetics.fields import Field, Values
+from magshell.model.constraints import Constraints
 from magshell.model.course import Loading
 from magshell.model.loads import Pairs
 from magshell.model.loads.cross import cross_matrix
 from magshell.model.rows import OMEGA, Rows, U
 from magshell.model.shell import Shell
-from magshell.model.supports import Constraints
 from magshell.shell import rotation
 from magshell.shell.rotation import cross
 from magshell.shell.state import State
@@ -74,6 +74,10 @@ class DipoleTerm(NodalTerm):
         if not self.present:
             return np.zeros((len(state.u), COMPONENTS))
         return self._of(state, self._values(state, loading))
+
+    def acting_in(self, state: State, field: Field, amounts: FloatArray) -> FloatArray:
+        """The same in another field, for its amounts."""
+        return self._of(state, field.at(amounts, self._points + state.u[self._at], second=False))
 
     def _forces(self, instant: Instant) -> FloatArray:
         return self.acting(instant.state, instant.loading)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
-from magshell.model.supports import FRAME_OF_FIELD, Constraints
+from magshell.model.constraints import FRAME_OF_FIELD, Constraints
 from magshell.shell.unknowns import COLUMNS
 
 

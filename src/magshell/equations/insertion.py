@@ -13,8 +13,8 @@ from magshell.arrays import FloatArray, IntArray
 from magshell.equations.frames import bases
 from magshell.equations.numbering import Numbering
 from magshell.equations.scatter import Destination, Elements
+from magshell.model.constraints import Constraints
 from magshell.model.loads import Pairs
-from magshell.model.supports import Constraints
 from magshell.shell.unknowns import COLUMNS, COMPONENTS
 
 

@@ -13,10 +13,10 @@ from magshell.equations.insertion import Insertion
 from magshell.equations.instant import Increment, Instant, Prediction, Weights
 from magshell.equations.nodal import NodalBlocks
 from magshell.equations.term import Contribution, squares_by_kind
+from magshell.model.constraints import Constraints
 from magshell.model.course import Loading
 from magshell.model.loads import Applied, Pairs
 from magshell.model.loads.cross import cross_matrix
-from magshell.model.supports import Constraints
 from magshell.shell.state import State
 from magshell.shell.unknowns import COLUMNS, COMPONENTS
 

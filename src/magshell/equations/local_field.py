@@ -8,6 +8,7 @@ from magshell.arrays import FloatArray
 from magshell.equations.term import FieldLost
 from magshell.magnetics.fields import Field, FieldUnknown, MagnetField, Values
 from magshell.magnetics.fields.sources import OUTSIDE
+from magshell.magnetics.law import GRADIENTS
 from magshell.model.course import Loading
 from magshell.shell.body import Reference
 from magshell.shell.positions import level_positions
@@ -44,27 +45,18 @@ class FieldAtLevels:
         except FieldUnknown as unknown:
             raise FieldLost(self._nearest(points, unknown), str(unknown)) from None
         self._check_outside(loading.drives, flat)
-        return self._shaped(values)
+        return shaped(values, points.shape[:3])
 
     def rate(self, state: State, loading: Loading, rate: Loading) -> LocalField:
         """Derivative of flux density and gradient along a rate of the loading, at fixed points."""
         if self.field.is_uniform:
             return self._uniform(rate.flux_density)
-        points = level_positions(self._reference, state).reshape(-1, 3)
-        return self._shaped(self.field.rate(loading.drives, rate.drives, points))
+        points = level_positions(self._reference, state)
+        return shaped(self.field.rate(loading.drives, rate.drives, points.reshape(-1, 3)), points.shape[:3])
 
     def _uniform(self, flux_density: FloatArray) -> LocalField:
         shape = self._reference.body.levels.shape
         return LocalField(np.array(np.broadcast_to(flux_density, (1, *shape[1:], 3))), None)
-
-    def _shaped(self, values: Values) -> LocalField:
-        shape, count = self._reference.body.levels.shape, len(values.flux_density)
-        slopes = np.zeros((count, 36))
-        slopes[:, :9] = values.gradient.reshape(count, 9)
-        if values.second is not None:
-            slopes[:, 9:] = values.second.reshape(count, 27)
-        B = np.ascontiguousarray(values.flux_density).reshape(*shape, 3)
-        return LocalField(np.array(B), slopes.reshape(*shape, 36))
 
     def _check_outside(self, drives: FloatArray, points: FloatArray) -> None:
         """Refuse a shell that penetrates a magnet."""
@@ -76,6 +68,19 @@ class FieldAtLevels:
                     place = ", ".join(f"{1e3 * x:.4g}" for x in points[inside[0]])
                     raise FieldLost(element, f"it is inside a magnet of {part.name}, at ({place}) mm")
 
-    def _nearest(self, points: FloatArray, unknown: FieldUnknown) -> int:
+    def _nearest(self, points: FloatArray, unknown: FieldUnknown) -> int | None:
+        """Element with the level that is nearest to where the field is not known."""
+        if unknown.position is None:
+            return None
         away = np.linalg.norm(points - unknown.position, axis=-1)
         return int(np.argmin(np.nan_to_num(away, nan=np.inf).reshape(len(away), -1).min(axis=1)))
+
+
+def shaped(values: Values, shape: tuple[int, ...]) -> LocalField:
+    """Values at the levels (elements, p, k) of a shell, as kernels take them."""
+    count = len(values.flux_density)
+    slopes = np.zeros((count, GRADIENTS))
+    slopes[:, :9] = values.gradient.reshape(count, 9)
+    if values.second is not None:
+        slopes[:, 9:] = values.second.reshape(count, 27)
+    return LocalField(np.array(values.flux_density).reshape(*shape, 3), slopes.reshape(*shape, GRADIENTS))

@@ -15,8 +15,8 @@ from magshell.equations.numbering import Numbering
 from magshell.equations.scatter import Destination, Elements, add_matrices, turn_matrices
 from magshell.equations.term import Contribution, InvertedElement
 from magshell.magnetics.fields import Field, UniformField
+from magshell.model.constraints import Constraints
 from magshell.model.course import Loading
-from magshell.model.supports import Constraints
 from magshell.shell import loops
 from magshell.shell.body import Reference
 from magshell.shell.element import padded

@@ -9,9 +9,9 @@ import numpy as np
 from magshell.arrays import FloatArray
 from magshell.equations.instant import Instant
 from magshell.equations.loads import LoadTerm
+from magshell.model.constraints import Constraints
 from magshell.model.course import Loading
 from magshell.model.springs import Elastic
-from magshell.model.supports import Constraints
 from magshell.shell.state import State
 from magshell.shell.unknowns import COMPONENTS
 

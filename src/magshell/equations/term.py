@@ -88,7 +88,7 @@ def squares_by_kind(nodal: FloatArray) -> FloatArray:
 class FieldLost(ArithmeticError):
     """A trial state has an element where the field is not known."""
 
-    def __init__(self, element: int, why: str) -> None:
+    def __init__(self, element: int | None, why: str) -> None:
         super().__init__(element, why)
         self.element, self.why = element, why
 

@@ -14,9 +14,11 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.equations.discretisation import Discretisation
+from magshell.equations.local_field import shaped
 from magshell.evaluation import points
 from magshell.evaluation.points import evaluate, level_stretch, of_couplings
 from magshell.evaluation.reactions import held_forces
+from magshell.magnetics.fields import Field
 from magshell.magnetics.law import X
 from magshell.model.course import Loading
 from magshell.shell.positions import level_positions
@@ -85,7 +87,19 @@ class Magnetic(NamedTuple):
 def magnetic(discretisation: Discretisation, state: State, loading: Loading) -> Magnetic:
     """Force and torque of the field, N and N m, and the integrals of their magnitudes."""
     field = discretisation.shell.field.at(state, loading, second=False)
-    on_shell, magnets = on_levels(discretisation, state, field), discretisation.dipoles.acting(state, loading)
+    return _exerted(discretisation, state, field, discretisation.dipoles.acting(state, loading))
+
+
+def magnetic_of(discretisation: Discretisation, state: State, part: Field, amounts: FloatArray) -> Magnetic:
+    """The same of a part of the field, for its amounts."""
+    points = level_positions(discretisation.reference, state)
+    field = shaped(part.at(amounts, points.reshape(-1, 3), second=False), points.shape[:3])
+    return _exerted(discretisation, state, field, discretisation.dipoles.acting_in(state, part, amounts))
+
+
+def _exerted(discretisation: Discretisation, state: State, field: LocalField, magnets: FloatArray) -> Magnetic:
+    """Of a field on the shell, with its forces on magnets (rows, 11)."""
+    on_shell = on_levels(discretisation, state, field)
     places = discretisation.rows.points + state.u
     moments = magnets[:, COLUMNS["omega"]] + cross(places, magnets[:, :3])
     forces, torques = on_shell.force.reshape(-1, 3), on_shell.torque.reshape(-1, 3)

@@ -7,14 +7,16 @@ from typing import Protocol
 
 import numpy as np
 
-from magshell.arrays import FloatArray, IntArray
+from magshell.arrays import FloatArray
 from magshell.equations.discretisation import Assembly, Discretisation
 from magshell.equations.instant import Instant
 from magshell.evaluation.balance import Balance, magnetic
+from magshell.evaluation.patches import patches_of
 from magshell.evaluation.points import PointFields, evaluate, level_stretch, of_couplings
 from magshell.evaluation.points import magnetic_torque as torque_of_points
 from magshell.evaluation.reactions import Reaction, held_forces, reactions
 from magshell.evaluation.resultants import Resultants
+from magshell.evaluation.sources import forces_on_sources
 from magshell.evaluation.strain import FACES, Deformation, Face
 from magshell.evaluation.work import Acting, Work, acting, work_between
 from magshell.model.course import Loading
@@ -104,6 +106,11 @@ class Converged:
         return np.stack([forces[:, COLUMNS["u"]], forces[:, COLUMNS["omega"]]], axis=1)
 
     @cached_property
+    def source_forces(self) -> FloatArray:
+        """Force and torque on each part of a field that varies (parts, 2, 3), N and N m."""
+        return forces_on_sources(self.discretisation, self.state, self.loading)
+
+    @cached_property
     def acting(self) -> Acting:
         """The nodal forces that do work."""
         return acting(self.discretisation, self.state, self.loading, self.assembly.residual, self.support_forces)
@@ -163,13 +170,17 @@ class Converged:
         return self.mean(torque_of_points(d.reference, self.fields, forces))
 
     def director(self) -> FloatArray:
-        """Director d = D + w (nodes, 3)."""
-        layout = self.discretisation.reference.body.layout
-        return self.discretisation.normals + self._filled(self.state.w[: len(self.mesh.points)], layout.w)
+        """Director d at the rows of the patches (rows, 3): that of the sheet and the section."""
+        return self._of_patches(self.element_directors())
 
     def phi(self) -> FloatArray:
-        """Thickness stretch φ (nodes,), 1/m."""
-        return self._filled(self.state.phi[: len(self.mesh.points)], self.discretisation.reference.body.layout.phi)
+        """Thickness stretch φ at the rows of the patches (rows,), 1/m."""
+        return self._of_patches(self.element_phi())
+
+    def normal(self) -> FloatArray:
+        """Unit normal D of the undeformed sheet at the rows of the patches (rows, 3)."""
+        rows = self.discretisation.rows
+        return self._of_patches(rows.normals[rows.elements])
 
     def element_directors(self) -> FloatArray:
         """Director at the nodes of each element (elements, 8, 3): where sections differ each has its own length."""
@@ -194,14 +205,9 @@ class Converged:
         return np.asarray(values)
 
     def rotation(self) -> FloatArray:
-        """Micro-rotation vector (nodes, 3), rad, of magnitude at most π."""
-        q = self.state.q[: len(self.mesh.points)]
-        if self.discretisation.reference.body.layout.q == 4:
-            ends = self._mid_side_ends
-            mean = q[ends[:, 0]] + q[ends[:, 1]]
-            q = q.copy()
-            q[self._mid_sides] = mean / np.linalg.norm(mean, axis=1, keepdims=True)
-        return rotation.logarithm(q)
+        """Micro-rotation vector at the rows of the patches (rows, 3), rad, of magnitude at most π."""
+        q = self._of_elements(self.state.q, self.discretisation.reference.body.layout.q)
+        return rotation.logarithm(self._of_patches(q / np.linalg.norm(q, axis=2, keepdims=True)))
 
     def remanence(self) -> FloatArray:
         """Remanence in the current configuration, J⁻¹ F B̃ (elements, 3), T, mean over the volume."""
@@ -220,23 +226,12 @@ class Converged:
         weights = volume / volume.sum(axis=(1, 2), keepdims=True)
         return np.asarray(np.einsum("epk,epk...->e...", weights, values))
 
-    @cached_property
-    def _mid_sides(self) -> IntArray:
-        return self.mesh.elements[:, 4:].ravel()
-
-    @cached_property
-    def _mid_side_ends(self) -> IntArray:
-        """Corner nodes (mid-sides, 2) on either side of each of `_mid_sides`."""
-        corners = self.mesh.elements[:, :4]
-        return np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2)
-
-    def _filled(self, nodal: FloatArray, carriers: int) -> FloatArray:
-        """A field of an element's first nodes; where these are the corners, mid-sides take the mean of their ends."""
-        if carriers == 8:
-            return nodal
-        values = nodal.copy()
-        values[self._mid_sides] = nodal[self._mid_side_ends].mean(axis=1)
-        return values
+    def _of_patches(self, values: FloatArray) -> FloatArray:
+        """What is one in each patch: from the nodes of the elements (elements, 8, ...) to the rows (rows, ...)."""
+        patches = patches_of(self.discretisation.model.shell)
+        found = np.empty((len(patches.nodes), *values.shape[2:]))
+        found[patches.elements] = values
+        return found
 
 
 class Reached(Protocol):
@@ -262,11 +257,17 @@ class Reached(Protocol):
 def converged(discretisation: Discretisation, reached: Reached) -> Converged:
     """What outputs are evaluated of, at a step or another state of the path. (What is held is the state's.)
 
-    Critical points and buckling modes do not keep the multipliers of the loads: there they are those of the histories.
+    Critical points and buckling modes do not keep multipliers of loads and amounts of the field: there they are those of
+    the histories.
     """
     loading = discretisation.model.course(reached.stage).at(reached.load_factor)
     loads = getattr(reached, "loads", None)
-    there = loading._replace(flux_density=reached.flux_density, loads=loading.loads if loads is None else loads)
+    drives = getattr(reached, "drives", loading.drives)
+    there = loading._replace(
+        flux_density=reached.flux_density,
+        loads=loading.loads if loads is None else loads,
+        drives=drives if len(drives) == len(loading.drives) else loading.drives,
+    )
     found = Converged(discretisation, reached.state, there)
     found.balance = getattr(reached, "balance", None)
     return found

@@ -56,6 +56,18 @@ def _magnetic(converged: Converged) -> Number:
     return float(converged.energies[:, MAGNETIC].sum()) + magnets
 
 
+def _varies(converged: Converged) -> bool:
+    return not converged.discretisation.model.field.is_uniform
+
+
+def _of_sources(model: Model) -> list[str]:
+    """Columns of the parts of a field that varies, by the names that their amounts have."""
+    if model.field.is_uniform:
+        return []
+    parts = dict.fromkeys(drive.rpartition(".")[0] for drive in model.field.drives)
+    return [f"{part}.{letter}{i}" for part in parts for letter in ("F", "T") for i in (1, 2, 3)]
+
+
 def _has_springs(model: Model) -> bool:
     return bool(model.springs) or any(hinge.stiffness for hinge in model.shell.hinges)
 
@@ -130,6 +142,22 @@ SERIES: dict[str, Series] = {
             "Energy of all springs (`springs`), if there are any.",
             lambda model: ["springs"] if _has_springs(model) else [],
             lambda converged: [converged.spring_energy] if _has_springs(converged.discretisation.model) else [],
+        ),
+        Series(
+            "amounts of the field",
+            "",
+            "Of a field that varies in space: multiplier, displacement (`d1`, `d2`, `d3`, m) and `angle` (rad) of each "
+            "of its parts.",
+            lambda model: list(model.field.drives) if not model.field.is_uniform else [],
+            lambda converged: converged.loading.drives.tolist() if _varies(converged) else [],
+        ),
+        Series(
+            "force on sources",
+            "",
+            "Force on each part of a field that varies (`PART.F1`, `F2`, `F3`, N) and torque about its middle "
+            "(`PART.T1`, `T2`, `T3`, N m).",
+            lambda model: _of_sources(model),
+            lambda converged: converged.source_forces.ravel().tolist() if _varies(converged) else [],
         ),
         Series(
             "motion of rigid bodies",

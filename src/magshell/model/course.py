@@ -106,7 +106,7 @@ class Course(NamedTuple):
 
     def stops(self) -> list[float]:
         """Load factors that the path must hit, 1 the last: the stage's own, and where |B| meets the field's stops."""
-        factors = {1.0, *self.stage.stops}
+        factors = {1.0, *np.asarray(self.stage.stops, dtype=float).tolist()}
         start, change = float(self.start.drives[0]), float(self.end.drives[0] - self.start.drives[0])
         if isinstance(self.field, UniformField) and change:
             for stop in np.asarray(self.field.stops, dtype=float).tolist():

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from magshell.errors import InputError
+import numpy as np
+
+from magshell.arrays import IntArray
+from magshell.errors import InputError, suggest
+from magshell.mesh import Mesh
 
 
 @dataclass(frozen=True)
@@ -29,5 +33,23 @@ class Hinge:
     stiffness: float = 0.0
 
     def __post_init__(self) -> None:
-        if not 0.0 <= float(self.stiffness) < float("inf"):
-            raise InputError(f"hinge on '{self.group}': stiffness is {self.stiffness!r}; it must be 0 or positive")
+        if not isinstance(self.stiffness, int | float | np.number) or not 0.0 <= self.stiffness < np.inf:
+            raise InputError(f"{self.label}: stiffness is {self.stiffness!r}; it must be a number, 0 or positive")
+
+    @property
+    def label(self) -> str:
+        """Its name in messages."""
+        return f"hinge on '{self.group}'"
+
+    def edges(self, mesh: Mesh) -> IntArray:
+        """Its edges (n, 3): ends and middle.
+
+        Raises
+        ------
+        InputError
+            The group is unknown, or none of edges.
+        """
+        if self.group not in mesh.edge_groups:
+            what = "it is no group of edges" if self.group in mesh.groups else "there is no such group of edges"
+            raise InputError(f"{self.label}: {what}. {suggest(self.group, mesh.edge_groups)}")
+        return mesh.edge_groups[self.group]

@@ -18,7 +18,10 @@ from magshell.magnetics.deformation_gradient_energy import DeformationGradientEn
 from magshell.magnetics.fields import Field, FieldUnknown, UniformField
 from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.model import coupling_limit, doubts, symmetry
+from magshell.model.constraints import Constraints, resolve
 from magshell.model.course import Amounts, Course, Loading
+from magshell.model.hinge_springs import hinge_springs
+from magshell.model.linkage import check_linkage
 from magshell.model.loads import Applied, Load
 from magshell.model.loads.distribution import nodal_areas
 from magshell.model.loads.mass import Mass, whole_mass
@@ -30,7 +33,9 @@ from magshell.model.rows import Rows, rows_of
 from magshell.model.shell import Shell
 from magshell.model.springs import Anchored, Spring, check_names, reaction_name
 from magshell.model.stages import Stage
-from magshell.model.supports import Constraints, Support, SymmetryPlane, resolve, turned_bodies
+from magshell.model.support import Support
+from magshell.model.supports import SymmetryPlane
+from magshell.model.turn import turned_bodies
 from magshell.multipliers import amplitudes
 from magshell.shell.state import State
 
@@ -137,6 +142,7 @@ class Model:
         put(self, "_ends", self._amounts_at_the_ends())
         self._check_targets()
         check_supported(places, self.rows.normals[: places.number], constraints, self.elastic)
+        check_linkage(self.shell, self.rows, self.constraints, self.elastic, hinge_springs(self.shell, self.rows))
         self._check_the_micro_rotation_matters()
         self._check_something_loads()
         for fault in symmetry.broken(self):
@@ -256,8 +262,11 @@ class Model:
             try:
                 B = self.field.at(amounts.drives, points, second=False).flux_density
             except FieldUnknown as unknown:
-                node = int(np.argmin(np.linalg.norm(points - unknown.position, axis=1)))
-                raise InputError(f"field: at node {node} of the undeformed shell: {unknown}") from None
+                where = "field"
+                if unknown.position is not None:
+                    node = int(np.argmin(np.linalg.norm(points - unknown.position, axis=1)))
+                    where = f"field: at node {node} of the undeformed shell"
+                raise InputError(f"{where}: {unknown}") from None
             if not np.isfinite(B).all():
                 node = int(np.argmin(np.isfinite(B).all(axis=1)))
                 place = ", ".join(f"{1e3 * x:.4g}" for x in points[node])

@@ -21,7 +21,7 @@ from magshell.errors import InputError
 from magshell.model.loads.distribution import centroid_weights
 from magshell.model.places import Places
 from magshell.model.shell import Shell
-from magshell.model.supports import Support
+from magshell.model.support import Support
 
 FIELDS = ("u", "w", "omega")
 # Sine of the angle between directions that are one.

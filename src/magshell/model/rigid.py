@@ -8,9 +8,9 @@ import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
+from magshell.model.constraints import Constraints
 from magshell.model.places import Places
 from magshell.model.springs import Elastic
-from magshell.model.supports import Constraints
 from magshell.shell.state import State
 
 

@@ -50,8 +50,8 @@ class RigidBody:
         if self.point is not None:
             object.__setattr__(self, "point", self._vector("point", self.point))
         object.__setattr__(self, "moment", self._vector("moment", self.moment))
-        if not 0.0 <= float(self.mass) < np.inf:
-            raise InputError(f"{self.label}: mass is {self.mass!r}; it must be 0 or positive")
+        if not isinstance(self.mass, int | float | np.number) or not 0.0 <= self.mass < np.inf:
+            raise InputError(f"{self.label}: mass is {self.mass!r}; it must be a number, 0 or positive")
 
     @property
     def label(self) -> str:
@@ -90,6 +90,8 @@ def members_of(mesh: Mesh, bodies: Sequence[RigidBody]) -> IntArray:
             nodes = mesh.nodes_of(body.group)
         except InputError as error:
             raise InputError(f"{body.label}: {error}") from None
+        if body.name != body.group and body.name in mesh.groups:
+            raise InputError(f"{body.label}: a group of the mesh has this name too; give the body another")
         taken = nodes[owner[nodes] >= 0]
         if taken.size:
             other = bodies[owner[taken[0]]]

@@ -20,11 +20,12 @@ import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.errors import InputError
+from magshell.model.constraints import FRAME_OF_FIELD, Constraints
 from magshell.model.reflection import in_mirror_planes
 from magshell.model.rigid_body import RigidBody, members_of
 from magshell.model.sheets import Sheets, sheets_of
 from magshell.model.shell import Shell
-from magshell.model.supports import FRAME_OF_FIELD, Constraints, SymmetryPlane
+from magshell.model.supports import SymmetryPlane
 from magshell.shell.normals import corner_normals
 from magshell.shell.ties import FREE, RIGID, STRETCHED, TURNED
 from magshell.shell.unknowns import COLUMNS, COMPONENTS
@@ -53,6 +54,8 @@ class Rows(NamedTuple):
         Which unknowns a row has for itself.
     kind : ndarray, shape (rows,)
         What the director is: `FREE`, `STRETCHED`, `TURNED` (by the micro-rotation) or `RIGID`.
+    piece, sheet : ndarray, shape (rows,)
+        First row of the piece and of the sheet of each.
     body : ndarray, shape (rows,)
         Row of the rigid body that moves this one; -1 for none.
     points, normals : ndarray, shape (rows, 3)
@@ -72,6 +75,8 @@ class Rows(NamedTuple):
     source: IntArray
     carried: AnyArray
     kind: IntArray
+    piece: IntArray
+    sheet: IntArray
     body: IntArray
     points: FloatArray
     normals: FloatArray
@@ -158,6 +163,7 @@ def rows_of(shell: Shell, planes: Sequence[SymmetryPlane] = ()) -> Rows:
     inside = of < nodes
     body[inside] = np.where(owner[of[inside]] >= 0, nodes + owner[of[inside]], -1)
     rigid = body >= 0
+    _check_hinges(shell, owner)
     _check_micro_rotation(shell, of, turned, rigid, bodies)
     rows = np.arange(len(of))
     source = np.repeat(rows[:, None], COMPONENTS, axis=1)
@@ -174,6 +180,8 @@ def rows_of(shell: Shell, planes: Sequence[SymmetryPlane] = ()) -> Rows:
         source=source,
         carried=_carried(shell, elements, of, source, kind),
         kind=kind,
+        piece=piece,
+        sheet=sheet,
         body=body,
         points=points,
         normals=_normals(shell, elements, of, sheet, planes),
@@ -188,6 +196,19 @@ def _sprung(sheets: Sheets, of: IntArray, nodes: int) -> AnyArray:
     return np.append(sheets.sprung, False)[np.minimum(of, nodes)]
 
 
+def _check_hinges(shell: Shell, owner: IntArray) -> None:
+    """Refuse hinges on rigid bodies, where nothing turns."""
+    for hinge in shell.hinges:
+        edges = hinge.edges(shell.mesh)
+        rigid = np.flatnonzero(np.all(owner[edges] >= 0, axis=1))
+        if rigid.size:
+            one, other = edges[rigid[0], :2]
+            raise InputError(
+                f"{hinge.label}: the edge between nodes {one} and {other} belongs to "
+                f"{shell.rigid[owner[one]].label}, in which nothing turns; leave these nodes out of the body"
+            )
+
+
 def _check_micro_rotation(
     shell: Shell, of: IntArray, turned: AnyArray, rigid: AnyArray, bodies: Sequence[RigidBody]
 ) -> None:
@@ -197,6 +218,11 @@ def _check_micro_rotation(
         raise InputError(
             f"{bodies[0].label}: micro_rotation is False, and a rigid body carries the shell by its micro-rotation; "
             "leave micro_rotation out"
+        )
+    if sprung := [hinge for hinge in shell.hinges if hinge.stiffness]:
+        raise InputError(
+            f"{sprung[0].label}: micro_rotation is False, and the spring acts on the micro-rotations of both sides; "
+            "leave micro_rotation out, or stiffness"
         )
     if turned.any():
         node = int(of[np.argmax(turned)])

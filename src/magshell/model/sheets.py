@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import AnyArray, IntArray
-from magshell.errors import InputError, suggest
+from magshell.errors import InputError
 from magshell.mesh import Mesh
 from magshell.mesh.edges import SIDES, edge_keys, find_edges
 from magshell.model.hinge import Hinge
@@ -63,6 +63,9 @@ def sheets_of(mesh: Mesh, hinges: Sequence[Hinge]) -> Sheets:
     hinged, sprung = np.zeros(len(edges.first_side), dtype=bool), np.zeros(count, dtype=bool)
     for hinge in hinges:
         numbers = _edges_of(mesh, hinge, edges.sides[edges.first_side], edges.sharing)
+        if hinged[numbers].any():
+            one, other = edges.sides[edges.first_side[numbers[np.argmax(hinged[numbers])]], :2]
+            raise InputError(f"{hinge.label}: the edge between nodes {one} and {other} is of another hinge too")
         hinged[numbers] = True
         nodes = edges.sides[edges.first_side[numbers]].ravel()
         special[nodes] = True
@@ -88,19 +91,15 @@ def sheets_of(mesh: Mesh, hinges: Sequence[Hinge]) -> Sheets:
 
 def _edges_of(mesh: Mesh, hinge: Hinge, edges: IntArray, sharing: IntArray) -> IntArray:
     """Numbers of the edges of a hinge."""
-    where = f"hinge on '{hinge.group}'"
-    if hinge.group not in mesh.edge_groups:
-        what = "it is no group of edges" if hinge.group in mesh.groups else "there is no such group of edges"
-        raise InputError(f"{where}: {what}. {suggest(hinge.group, mesh.edge_groups)}")
     count = len(mesh.points)
     keys = edge_keys(edges, count)
-    numbers = np.searchsorted(keys, edge_keys(mesh.edge_groups[hinge.group], count))
+    numbers = np.searchsorted(keys, edge_keys(hinge.edges(mesh), count))
     free = np.flatnonzero(sharing[numbers] < 2)
     if free.size:
-        one, other = mesh.edge_groups[hinge.group][free[0], :2]
+        one, other = hinge.edges(mesh)[free[0], :2]
         raise InputError(
-            f"{where}: the edge between nodes {one} and {other} is a free edge of the shell; a hinge joins two or "
-            "more elements"
+            f"{hinge.label}: the edge between nodes {one} and {other} is a free edge of the shell; a hinge joins two "
+            "or more elements"
         )
     return np.asarray(numbers)
 

@@ -29,7 +29,7 @@ from magshell.model.loads.distribution import Products, centroid_weights, produc
 from magshell.model.loads.load import Applied, Pairs
 from magshell.model.places import Places
 from magshell.model.shell import Shell
-from magshell.model.supports import REACTION
+from magshell.model.support import REACTION
 from magshell.shell.state import State
 from magshell.units import AREA_STIFFNESS, LINE_STIFFNESS, STIFFNESS, Dimension, show
 from magshell.wording import counted, vector
@@ -81,7 +81,7 @@ class Spring:
 
     kind: ClassVar[str] = "translation"
     keys: ClassVar[Mapping[str, Key]] = {
-        "group": Key("Name", "Group of nodes, edges or elements that the springs hold."),
+        "group": Key("Name", "Group of nodes, edges or elements that the springs hold, or the name of a rigid body."),
         "stiffness": Key("Stiffness", "Of all springs together.", "one of the three is needed"),
         "per_length": Key("LineStiffness", "Per undeformed length of a group of edges.", "one of the three is needed"),
         "per_area": Key("AreaStiffness", "Per undeformed area of a group of elements.", "one of the three is needed"),

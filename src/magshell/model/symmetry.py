@@ -17,7 +17,8 @@ from magshell.model.loads import Load
 from magshell.model.reflection import angle_to_plane, in_plane, is_normal
 from magshell.model.shell import Shell
 from magshell.model.stages import Stage
-from magshell.model.supports import Support, SymmetryPlane
+from magshell.model.support import Support
+from magshell.model.supports import SymmetryPlane
 from magshell.shell.normals import nodal_normals
 from magshell.units import FLUX_DENSITY, Dimension, show
 

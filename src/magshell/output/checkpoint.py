@@ -31,7 +31,7 @@ from magshell.shell.unknowns import COMPONENTS
 from magshell.solver.critical import CriticalPoint
 from magshell.solver.events import Observer
 from magshell.solver.path import Path
-from magshell.solver.step import Step
+from magshell.solver.step import NO_DRIVES, Step
 from magshell.solver.track import Slope
 from magshell.solver.waypoint import Waypoint
 from magshell.units import shortened
@@ -187,6 +187,7 @@ def content(waypoint: Waypoint, origin: Origin) -> bytes:
         "residual": step.residual,
         "flux_density": step.flux_density,
         "loads": step.loads,
+        "drives": step.drives,
         "negative_pivots": _counted(step.negative_pivots),
         **step.state._asdict(),
         "slope_increment": slope.increment.nodal,
@@ -240,6 +241,7 @@ def _waypoint(arrays: Mapping[str, np.ndarray]) -> Waypoint:
         int(arrays["number"]), float(arrays["load_factor"]), _state(arrays, ""), int(arrays["iterations"]),
         float(arrays["residual"]), _balance(arrays), float(arrays["arc_length"]), int(arrays["stage"]),
         arrays["flux_density"], arrays["loads"], _known(arrays["negative_pivots"]),
+        arrays.get("drives", NO_DRIVES),
     )  # fmt: skip
     slope = Slope(Increment(_columns(arrays["slope_increment"]), arrays["slope_alpha"]), float(arrays["slope_load"]))
     critical = tuple(_critical(arrays, f"critical{number + 1}_") for number in range(int(arrays["critical_points"])))

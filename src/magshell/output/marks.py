@@ -11,13 +11,15 @@ import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.mesh.geometry import centres, unit
+from magshell.output.scene import polylines
 from magshell.output.style import ACCENT, COLOURS, INK
-from magshell.units import FLUX_DENSITY, show
+from magshell.units import FLUX_DENSITY, HINGE_STIFFNESS, MAGNETIC_MOMENT, show
 
 if TYPE_CHECKING:
     from magshell.model.model import Model
 
 REMANENCE, LOAD, SUPPORTS = COLOURS[0], COLOURS[3], (COLOURS[2], COLOURS[4], COLOURS[6], COLOURS[5])
+BODIES, HINGES = (COLOURS[1], COLOURS[7 % len(COLOURS)]), (ACCENT, INK)
 MOST_ARROWS = 110
 MOST_POSTS = 40
 MOST_OF_A_LOAD = 12
@@ -37,6 +39,7 @@ class Solids(Enum):
     CUBES = ("s", 8.0)
     BALLS = ("o", 7.0)
     COILS = ("$\\wr$", 13.0)
+    BARS = ("_", 16.0)
 
     @property
     def marker(self) -> str:
@@ -60,11 +63,11 @@ class Mark:
     colour : str
     solids : Solids
     places : FloatArray, shape (n, 3)
-        Middles of arrows, coils, cubes and balls, m.
+        Middles of arrows, coils, bars, cubes and balls, m.
     vectors : FloatArray, shape (n, 3)
-        Of arrows and coils, as long as they are drawn, m.
+        Of arrows, coils and bars, as long as they are drawn, m.
     width : float
-        Of cubes and balls, m.
+        Of cubes and balls, and how thick bars are, m.
     letters : list of (str, FloatArray (3,), (float, float))
         Text, its place and how far from it, in points.
     """
@@ -80,7 +83,7 @@ class Mark:
     @property
     def extent(self) -> FloatArray:
         """Points (m, 3) that the picture must hold."""
-        if self.solids not in (Solids.ARROWS, Solids.COILS):
+        if not len(self.vectors):
             return self.places
         beyond = 0.7 if self.letters else 0.5
         ends = np.concatenate([self.places - 0.5 * self.vectors, self.places + beyond * self.vectors])
@@ -103,6 +106,9 @@ class Mark:
                 tip_resolution=32, shaft_resolution=24,
             )  # fmt: skip
             body = points.glyph(orient="vector", scale="length", factor=1.0, geom=solid)
+        elif self.solids is Solids.BARS:
+            ends = np.stack([self.places - 0.5 * self.vectors, self.places + 0.5 * self.vectors], axis=1)
+            body = polylines(ends).tube(radius=0.5 * self.width, n_sides=12)
         else:
             cube = self.solids is Solids.CUBES
             geometry = pyvista.Cube() if cube else pyvista.Sphere(theta_resolution=24, phi_resolution=24)
@@ -251,6 +257,36 @@ def spring_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:
         vectors = np.tile(0.09 * size * along, (len(nodes), 1))
         name, colour = f"{spring.group}: {spring.legend}", SUPPORTS[number % len(SUPPORTS)]
         marks.append(Mark(name, colour, Solids.COILS, mesh.points[nodes] - 0.56 * vectors, vectors))
+    return marks
+
+
+def body_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:
+    """Balls on the nodes of rigid bodies, and an arrow of its magnetic moment at each that has one."""
+    marks, mesh, turned = [], model.shell.mesh, {one.group for one in model.supports}
+    for number, body in enumerate(model.shell.rigid):
+        nodes, colour = mesh.nodes_of(body.group), BODIES[number % len(BODIES)]
+        if body.name not in turned:
+            nodes = nodes[spread_out(mesh.points[nodes], MOST_POSTS)]
+            width = min(0.014 * size, 0.7 * _closest(mesh.points[nodes]))
+            places = mesh.points[nodes] + 0.3 * width * axes[2]
+            marks.append(Mark(f"{body.name}: rigid body", colour, Solids.BALLS, places, width=width))
+        strength = float(np.linalg.norm(body.moment))
+        if strength:
+            arrow = 0.13 * size * np.asarray(body.moment) / strength
+            place = body.reference_point(mesh) + 0.02 * size * axes[2]
+            name = f"{body.name}: magnetic moment, {show(strength, MAGNETIC_MOMENT)}"
+            marks.append(Mark(name, REMANENCE, Solids.ARROWS, place[None], arrow[None]))
+    return marks
+
+
+def hinge_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:
+    """Bars along the edges."""
+    marks = []
+    for number, hinge in enumerate(model.shell.hinges):
+        ends = model.shell.mesh.points[hinge.edges(model.shell.mesh)][:, [[0, 2], [2, 1]]].reshape(-1, 2, 3)
+        name = f"{hinge.group}: hinge" + (f", {show(hinge.stiffness, HINGE_STIFFNESS)}" if hinge.stiffness else "")
+        places, width = ends.mean(axis=1) + 0.003 * size * axes[2], 0.006 * size
+        marks.append(Mark(name, HINGES[number % 2], Solids.BARS, places, ends[:, 1] - ends[:, 0], width))
     return marks
 
 

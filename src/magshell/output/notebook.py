@@ -131,6 +131,10 @@ def _model_rows(model: Model) -> list[tuple[str, str]]:
         rows.append(("supports", _listed([f"{type(one).__name__} on {one.group}" for one in model.supports])))
     if model.springs:
         rows.append(("springs", _listed([f"{one.legend} on {one.group}" for one in model.springs])))
+    if model.shell.rigid:
+        rows.append(("rigid bodies", _listed([one.name for one in model.shell.rigid])))
+    if model.shell.hinges:
+        rows.append(("hinges", _listed([one.group for one in model.shell.hinges])))
     if len(model.stages) > 1:
         rows.append(("stages", ", ".join(stage.name or stage.control for stage in model.stages)))
     if model.probes:

@@ -12,7 +12,7 @@ from fractions import Fraction
 from functools import partial
 from typing import Annotated, Any, Literal, get_args
 
-from pydantic import AfterValidator, BeforeValidator, StrictBool, ValidationInfo
+from pydantic import AfterValidator, BeforeValidator, Discriminator, StrictBool, Tag, ValidationInfo
 
 from magshell import units
 from magshell.errors import InputError, suggest
@@ -241,6 +241,9 @@ FluxGradient = Annotated[float, _quantity(units.FLUX_GRADIENT)]
 AnyCurrent = Annotated[float, _quantity(units.CURRENT)]
 Current = Annotated[float, _quantity(units.CURRENT), AfterValidator(_not_zero)]
 DipoleMoment = Annotated[float, _quantity(units.MAGNETIC_MOMENT)]
+AngularStiffness = Annotated[float, _positive_quantity(units.ANGULAR_STIFFNESS)]
+HingeStiffness = Annotated[float, _positive_quantity(units.HINGE_STIFFNESS)]
+PositiveMass = Annotated[float, _positive_quantity(units.MASS)]
 Acceleration = Annotated[float, _quantity(units.ACCELERATION)]
 PositiveDensity = Annotated[float, _positive_quantity(units.DENSITY)]
 Angle = Annotated[float, _quantity(units.ANGLE)]
@@ -301,7 +304,7 @@ Polarisation = Annotated[
 ]
 MagneticMoment = Annotated[
     tuple[DipoleMoment, DipoleMoment, DipoleMoment],
-    _list_of(3, "components of the magnetic moment along the dipole's own axes"),
+    _list_of(3, "components of the magnetic moment"),
     AfterValidator(_nonzero),
 ]
 Sides = Annotated[tuple[PositiveLength, PositiveLength, PositiveLength], _list_of(3, "lengths along its own axes")]
@@ -322,6 +325,19 @@ Corners = Annotated[tuple[Corner, Corner, Corner, Corner], _list_of(4, "corners,
 
 PlaneCorner = Annotated[tuple[Length, Length], _list_of(2, "coordinates X1 and X2")]
 Outline = Annotated[tuple[PlaneCorner, ...], BeforeValidator(_outline)]
+
+
+def _count_or_list(value: object) -> str:
+    return "list" if isinstance(value, list | tuple) else "count"
+
+
+FieldStops = Annotated[
+    Annotated[Count, Tag("count")] | Annotated[tuple[PositiveFluxDensity, ...], Tag("list")],
+    Discriminator(_count_or_list),
+]
+StageStops = Annotated[
+    Annotated[Count, Tag("count")] | Annotated[tuple[PositiveNumber, ...], Tag("list")], Discriminator(_count_or_list)
+]
 
 
 def one_of(names: Collection[str]) -> BeforeValidator:

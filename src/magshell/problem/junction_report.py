@@ -1,4 +1,4 @@
-"""What `magshell check` says of the lines at which sheets meet: kinks, joints, opposite normals, cuts."""
+"""What `magshell check` says of the lines at which sheets meet: kinks, joints, hinges, opposite normals, cuts."""
 
 from __future__ import annotations
 
@@ -10,24 +10,35 @@ from magshell.arrays import IntArray
 from magshell.mesh import Mesh
 from magshell.mesh.geometry import COINCIDENT
 from magshell.mesh.junctions import Line, junctions_of
-from magshell.units import LENGTH, show
+from magshell.model.hinge import Hinge
+from magshell.units import HINGE_STIFFNESS, LENGTH, show
 from magshell.wording import counted
 
 MOST_LINES = 4
 
 
-def lines(mesh: Mesh) -> Iterator[tuple[str, str]]:
-    """Label and text of every line of the report."""
-    found = junctions_of(mesh)
+def lines(mesh: Mesh, hinges: Sequence[Hinge] = ()) -> Iterator[tuple[str, str]]:
+    """Label and text of every line of the report; hinges are said apart from kinks and joints."""
+    found, hinged = junctions_of(mesh), {hinge.group for hinge in hinges}
     for label, each in (
         ("kinks", found.kinks),
         ("joints of three or more", found.joints),
         ("normals change sign", found.flips),
     ):
+        each = [line for line in each if not hinged.intersection(line.groups)]
         if each:
             yield label, _said(mesh, each, angles=label == "kinks", groups=label != "normals change sign")
+    for hinge in hinges:
+        yield "hinge", _hinge(mesh, hinge)
     if mesh.cuts:
         yield "cuts", ", ".join(f"{name} ({counted(len(mesh.nodes_of(name)), 'node')})" for name in mesh.cuts)
+
+
+def _hinge(mesh: Mesh, hinge: Hinge) -> str:
+    edges = hinge.edges(mesh)
+    length = float(np.linalg.norm(mesh.points[edges[:, 1]] - mesh.points[edges[:, 0]], axis=1).sum())
+    spring = f"with a spring of {show(hinge.stiffness, HINGE_STIFFNESS)}" if hinge.stiffness else "turns freely"
+    return f"{hinge.group}, {counted(len(edges), 'edge')}, {show(length, LENGTH)}, {spring}"
 
 
 def _said(mesh: Mesh, found: Sequence[Line], angles: bool, groups: bool) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.evaluation.outputs import chosen
+from magshell.magnetics.fields import UniformField
 from magshell.materials import own_keys
 from magshell.mesh.files import FileMesh
 from magshell.mesh.quality import worst
@@ -17,9 +18,11 @@ from magshell.model import symmetry
 from magshell.model.doubts.figures import Figures, Whole, figures_of
 from magshell.model.doubts.loads import strength
 from magshell.model.springs import Spring
-from magshell.model.supports import Support, SymmetryPlane
+from magshell.model.support import Support
+from magshell.model.supports import SymmetryPlane
 from magshell.model.words import offset_of, span
 from magshell.problem import (
+    body_report,
     fields,
     junction_report,
     load_report,
@@ -32,7 +35,6 @@ from magshell.problem import (
 from magshell.problem.building import Problem
 from magshell.problem.building.material import by_default
 from magshell.problem.fields import dimension_of
-from magshell.shell.unknowns import width
 from magshell.units import DENSITY, FLUX_DENSITY, LENGTH, MASS, NUMBER, STRESS, show
 from magshell.wording import counted, quantity
 
@@ -73,6 +75,7 @@ def describe(problem: Problem) -> Report:
             **({"Loads": list(load_report.lines(problem, strong))} if problem.file.loads else {}),
             **({"Supports": list(_supports(problem, figures))} if problem.model.supports else {}),
             **({"Springs": list(_springs(problem, figures))} if problem.model.springs else {}),
+            **({"Rigid bodies": list(body_report.lines(problem.model))} if problem.model.shell.rigid else {}),
             **({"Stages": list(_stages(problem))} if len(problem.model.stages) > 1 or problem.file.stages else {}),
             "Probes": list(_probes(problem, figures.extent)),
             **({"Results": list(_results(problem))} if problem.file.results.model_fields_set else {}),
@@ -91,8 +94,7 @@ def problem_html(problem: Problem) -> str:
 
 def _mesh(problem: Problem, extent: float) -> Iterator[tuple[str, str]]:
     mesh = problem.model.shell.mesh
-    carriers = problem.model.shell.carriers
-    unknowns = sum(width(field) * int(nodes.sum()) for field, nodes in carriers.items())
+    carried = problem.model.rows.carried
     least, greatest = mesh.points.min(axis=0), mesh.points.max(axis=0)
     quality = worst(mesh)
     if isinstance(mesh, FileMesh):
@@ -104,11 +106,13 @@ def _mesh(problem: Problem, extent: float) -> Iterator[tuple[str, str]]:
     yield "elements, nodes", f"{len(mesh.elements)}{shapes}, {len(mesh.points)}"
     yield (
         "unknowns",
-        f"{unknowns - int(problem.model.constraints.fixed.sum())}, and {unknowns} before supports",
+        f"{int((carried & ~problem.model.constraints.fixed).sum())}, and {int(carried.sum())} before supports",
     )
     if len(mesh.parts) > 1:
         yield "separate parts", str(len(mesh.parts))
-    yield from junction_report.lines(mesh)
+    yield from junction_report.lines(mesh, problem.model.shell.hinges)
+    if (joined := problem.model.rows.joined).size:
+        yield "joint nodes", f"{len(joined)}, where one rotation carries the directors of all sheets"
     for axis in range(3):
         span = [_coordinate(each[axis], extent) for each in (least, greatest)]
         yield f"X{axis + 1}", " to ".join(span)
@@ -193,8 +197,12 @@ def _field(problem: Problem, figures: Whole) -> Iterator[tuple[str, str]]:
         yield "flux density B", quantity(table.vector, FLUX_DENSITY)
     yield "|B|", show(figures.field, FLUX_DENSITY)
     yield "coupling law", table.coupling
-    if table.stops:
-        yield "stops", ", ".join(show(stop, FLUX_DENSITY) for stop in table.stops)
+    field = problem.model.field
+    stops = np.asarray(field.stops, dtype=float).tolist() if isinstance(field, UniformField) else []
+    if isinstance(table.stops, int) and stops:
+        yield "stops", f"{counted(len(stops), 'stop')}, {show(stops[0], FLUX_DENSITY)} apart"
+    elif stops:
+        yield "stops", ", ".join(show(stop, FLUX_DENSITY) for stop in stops)
     yield "10³ |B| |Brem| / (mu mu0)", f"{figures.magnetic_load:.4g}"
     yield "12 |B| |Brem| / (mu0 E) (L/h)²", f"{figures.bending_load:.4g}"
 

@@ -37,7 +37,7 @@ class Layout(NamedTuple):
     modes : int
         Enhanced modes.
     s : int
-        How many nodes may carry a stretch of the director (`director_stretch.py`); 0 where no sections differ.
+        How many nodes may carry a stretch of the director (`ties.py`); 0 where no sections differ.
     at_w, at_phi, at_q, nodal : int
         First place of w, of φ, of q or ϑ, and with ϑ of α, and of s after the elimination of α.
     """

@@ -235,6 +235,7 @@ class Follower:
             flux_density=loading.flux_density,
             loads=loading.loads,
             negative_pivots=point.negative_pivots,
+            drives=loading.drives,
         )
         self.path.add(
             Waypoint(

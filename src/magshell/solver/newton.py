@@ -189,7 +189,8 @@ def factorise(system: System, assembly: Assembly) -> Factorisation:
 
 def _failed(failure: InvertedElement | FieldLost) -> StepFailure:
     if isinstance(failure, FieldLost):
-        return StepFailure(f"the field at element {failure.element}: {failure.why}", failure.element)
+        where = "the field" if failure.element is None else f"the field at element {failure.element}"
+        return StepFailure(f"{where}: {failure.why}", failure.element)
     element, determinant = failure.element, failure.determinant
     if determinant == 0.0:
         return StepFailure(f"the inner unknowns of element {element} cannot be eliminated")

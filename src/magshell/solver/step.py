@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from magshell.arrays import FloatArray
 from magshell.evaluation.balance import Balance
 from magshell.shell.state import State
+
+NO_DRIVES = np.zeros(0)
 
 
 class Step(NamedTuple):
@@ -35,6 +39,8 @@ class Step(NamedTuple):
     negative_pivots : int or None
         Of the tangent: 0 for a stable state (`magshell.solver.critical` says of which shells); None where the linear
         solver cannot tell.
+    drives : ndarray, shape (drives,)
+        Amounts of the field; empty in steps of magshell 0.1.0.
     """
 
     number: int
@@ -48,6 +54,7 @@ class Step(NamedTuple):
     flux_density: FloatArray
     loads: FloatArray
     negative_pivots: int | None
+    drives: FloatArray = NO_DRIVES
 
     def __repr__(self) -> str:
         return f"Step({self.number}: load factor {self.load_factor:.6g} of stage {self.stage + 1})"

@@ -10,7 +10,7 @@ from magshell.magnetics.remanence.sampled import averaged
 from magshell.mesh.geometry import centres
 from magshell.mesh.quality import worst
 from magshell.model import coupling_limit, symmetry
-from magshell.model.doubts import loads, parts, triangles
+from magshell.model.doubts import loads, parts, rotations, triangles
 from magshell.model.doubts.asked import Asked
 from magshell.model.doubts.figures import Figures, Whole, figures_of
 from magshell.model.shell import Shell
@@ -41,6 +41,7 @@ def _doubts(model: Asked) -> Iterator[str]:
     yield from coupling_limit.reached(shell, model.coupling, model.largest_field)
     yield from _of_places(shell)
     yield from loads.doubts(model, loads.strength(model, figures))
+    yield from rotations.doubts(model)
     yield from symmetry.broken(model)
     if model.constraints.fixed[:, :3].all():
         yield "the supports hold every node: the displacement is given everywhere, nothing is left to move"
@@ -87,18 +88,19 @@ def _of_field(model: Asked, figures: Whole) -> Iterator[str]:
     strongest = max(float(np.linalg.norm(part.remanence, axis=-1).max()) for part in model.shell.parts)
     if strongest > KEPT:
         yield f"the remanence is {show(strongest, FLUX_DENSITY)}: more than any magnet keeps"
+    magnets = any(np.any(body.moment) for body in model.shell.rigid)
     if figures.field and not figures.strongest and model.shell.magnetised:
         yield "the remanence of the layers has no mean: the undeformed shape feels no couple"
-    elif figures.field and not figures.strongest:
+    elif figures.field and not figures.strongest and not magnets:
         yield "there is a field but no remanence: the field does nothing"
-    elif figures.field and figures.couple < 1e-9 * figures.field * figures.strongest:
+    elif figures.field and not magnets and figures.couple < 1e-9 * figures.field * figures.strongest:
         alone = not model.loads and not np.any(model.constraints.values)
         stays = ", so it stays as it is" if alone else ""
         yield (
             f"the field is parallel to the remanence everywhere: the undeformed shape feels no couple{stays}. Where it "
             "should buckle, try magshell buckling, or tilt the field by 1\u00b0"
         )
-    elif figures.field and figures.bending_load < STILL:
+    elif figures.field and not magnets and figures.bending_load < STILL:
         yield (
             f"the bending load is {figures.bending_load:.2g}: the field turns the end of a strip of this length by "
             f"{show(0.5 * figures.bending_load, ANGLE, 2)}, so the shell will hardly move; check the units, such as "

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any, Protocol
 
 from magshell.arrays import FloatArray
-from magshell.model.supports import Constraints
+from magshell.model.constraints import Constraints
 from magshell.model.symmetry import Mirrored
 
 

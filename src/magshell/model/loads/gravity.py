@@ -15,7 +15,7 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from magshell.arrays import FloatArray
+from magshell.arrays import FloatArray, IntArray
 from magshell.keys import HISTORY, Key
 from magshell.mesh.geometry import centres
 from magshell.model.loads.checks import vector
@@ -37,7 +37,8 @@ class Gravity(Load):
     acceleration : array_like, shape (3,)
         m/s².
     group : str, optional
-        A group of elements that has weight, or a rigid body with a mass; by default all.
+        A group of elements that has weight, or a rigid body with a mass; where they have one name, both. By default
+        all.
     history : sequence of float, optional
         Multiplier at the end of each stage; by default 1 at the end of the first and from then on.
     """
@@ -45,7 +46,7 @@ class Gravity(Load):
     kind: ClassVar[str] = "gravity"
     keys: ClassVar[Mapping[str, Key]] = {
         "acceleration": Key("AccelerationVector", "Of free fall."),
-        "group": Key("Name", "Group of elements that has weight.", "the whole shell"),
+        "group": Key("Name", "Group of elements that has weight, or rigid body with a mass.", "the whole shell"),
         "history": HISTORY,
     }
     amount: ClassVar[tuple[str, Dimension]] = ("acceleration", ACCELERATION)
@@ -60,13 +61,18 @@ class Gravity(Load):
         """The load on a mesh."""
         with self.located():
             acceleration = vector("acceleration", self.acceleration)
-            body = shell.body_row(self.group)
-            members = np.empty(0, dtype=np.int64) if body is not None else self.members(shell)
+            members = self.members(shell)
         masses = nodal_masses(shell, rows, members)
         for number, one in enumerate(shell.rigid):
             if self.group in (None, one.name):
                 masses.on_u[rows.nodes + number] += one.mass
         return DeadForces(*(mass[:, None] * acceleration for mass in masses))
+
+    def members(self, shell: Shell) -> IntArray:
+        """The elements that have weight: of the group, none of a rigid body that is no group of this name."""
+        if shell.body_row(self.group) is not None and self.group not in shell.mesh.element_groups:
+            return np.empty(0, dtype=np.int64)
+        return super().members(shell)
 
     def words(self, shell: Shell, forces: FloatArray) -> str:
         """Acceleration and weight."""
@@ -77,8 +83,9 @@ class Gravity(Load):
         return Size(weight=float(np.linalg.norm(resultant(forces))))
 
     def arrows(self, shell: Shell, forces: FloatArray) -> Arrows:
-        """One, amid the elements."""
-        middles = centres(shell.mesh.points, shell.mesh.elements[self.members(shell)])
+        """One, amid the elements, or at the rigid body."""
+        bodies = [one.reference_point(shell.mesh) for one in shell.rigid if one.name == self.group]
+        middles = np.array(bodies) if bodies else centres(shell.mesh.points, shell.mesh.elements[self.members(shell)])
         return Arrows(amid(middles), np.array([self.value]), f"{self.kind}, {self.magnitude}")
 
     def beyond(self, at_nodes: bool, at_elements: bool) -> str:

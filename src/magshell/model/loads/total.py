@@ -7,7 +7,7 @@ from magshell.keys import Key
 from magshell.model.loads.load import Load
 from magshell.model.shell import Shell
 
-GROUP = Key("Name", "Group of edges, nodes or elements that it acts on.")
+GROUP = Key("Name", "Group of edges, nodes or elements that it acts on, or the name of a rigid body.")
 FOLLOWER = Key("Switch", "Whether it turns with the micro-rotations of its nodes.")
 
 

@@ -16,7 +16,8 @@ from magshell.model.model import Model
 from magshell.model.shell import Shell
 from magshell.model.springs import SPRINGS, Spring
 from magshell.model.stages import Stage
-from magshell.model.supports import SUPPORTS, Support
+from magshell.model.support import Support
+from magshell.model.supports import SUPPORTS
 from magshell.problem import schema
 from magshell.problem.building.field import build_field
 from magshell.problem.building.located import at
@@ -86,8 +87,8 @@ def build(file: ProblemFile, source: str, text: str = "", folder: pathlib.Path =
         mesh = build_mesh(file.mesh, folder)
         shell = build_shell(file, mesh, folder)
         field = build_field(file, folder)
-        supports = _supports(file.supports, mesh)
-        springs = _springs(file.springs, mesh)
+        supports = _supports(file.supports, shell)
+        springs = _springs(file.springs, shell)
         loads = _loads(file.loads, shell)
         _probes_exist(file.probes, mesh)
         with at("results.outputs"):
@@ -127,22 +128,22 @@ def _stages(tables: tuple[schema.StageTable, ...]) -> list[Stage]:
     return stages
 
 
-def _supports(tables: tuple[schema.SupportTable, ...], mesh: Mesh) -> list[Support]:
+def _supports(tables: tuple[schema.SupportTable, ...], shell: Shell) -> list[Support]:
     supports: list[Support] = []
     for number, table in enumerate(tables):
         with at(f"supports[{number}].group"):
-            mesh.nodes_of(table.group)
+            shell.nodes_of(table.group)
         with at(f"supports[{number}]"):
             cls = SUPPORTS[table.kind]
             supports.append(cls(**{key: getattr(table, key) for key in cls.all_keys()}))
     return supports
 
 
-def _springs(tables: tuple[schema.SpringTable, ...], mesh: Mesh) -> list[Spring]:
+def _springs(tables: tuple[schema.SpringTable, ...], shell: Shell) -> list[Spring]:
     springs: list[Spring] = []
     for number, table in enumerate(tables):
         with at(f"springs[{number}].group"):
-            mesh.nodes_of(table.group)
+            shell.nodes_of(table.group)
         cls = SPRINGS[table.kind]
         springs.append(cls(**{key: getattr(table, key) for key in cls.keys}))
     return springs

@@ -9,7 +9,9 @@ from typing import Any
 from magshell.magnetics.remanence import Remanence
 from magshell.mesh import Mesh
 from magshell.model import thickness as thicknesses
+from magshell.model.hinge import Hinge
 from magshell.model.region import NO_REMANENCE, Layer, Region
+from magshell.model.rigid_body import RigidBody
 from magshell.model.shell import Shell
 from magshell.model.thickness import Thickness
 from magshell.problem import schema
@@ -40,6 +42,8 @@ def build_shell(file: ProblemFile, mesh: Mesh, folder: pathlib.Path) -> Shell:
         layers=builder.layers("shell", table.layers),
         offset=table.offset,
         levels=table.levels,
+        hinges=[builder.hinge(number, one) for number, one in enumerate(file.hinges)],
+        rigid=[builder.rigid(number, one) for number, one in enumerate(file.rigid)],
         **given,
     )
 
@@ -69,6 +73,21 @@ class _Builder:
             offset=table.offset,
             levels=table.levels,
         )
+
+    def rigid(self, number: int, table: schema.RigidTable) -> RigidBody:
+        """An entry of `rigid`."""
+        with at(f"rigid[{number}].group"):
+            self._mesh.nodes_of(table.group)
+        given = {key: value for key, value in table.model_dump().items() if value is not None}
+        with at(f"rigid[{number}]"):
+            return RigidBody(**given)
+
+    def hinge(self, number: int, table: schema.HingeTable) -> Hinge:
+        """An entry of `hinges`."""
+        hinge = Hinge(table.group, table.stiffness or 0.0)
+        with at(f"hinges[{number}].group"):
+            hinge.edges(self._mesh)
+        return hinge
 
     def layers(self, where: str, tables: Sequence[schema.LayerTable]) -> list[Layer]:
         """The entries of `layers`."""

@@ -20,6 +20,7 @@ from magshell.model.springs import SPRINGS
 from magshell.model.supports import SUPPORTS
 from magshell.problem import fields as f
 from magshell.problem.schema.described import table_of
+from magshell.problem.schema.joints import HingeTable, RigidTable
 from magshell.problem.schema.loading import FieldTable, LoadTable, SpringTable, SupportTable
 from magshell.problem.schema.material import MaterialTable
 from magshell.problem.schema.mesh import (
@@ -67,6 +68,7 @@ __all__ = [
     "FieldTable",
     "FoldTable",
     "GradientTable",
+    "HingeTable",
     "LayerTable",
     "LoadTable",
     "MagnetTable",
@@ -82,6 +84,7 @@ __all__ = [
     "RegionTable",
     "RemanenceTable",
     "ResultsTable",
+    "RigidTable",
     "Round",
     "SampledTable",
     "Selection",
@@ -119,6 +122,8 @@ class ProblemFile(Table):
         "loads[]": "kind",
         "magnets[]": "shape",
         "coils[]": "shape",
+        "field.stops": "",
+        "stages[].stops": "",
         "material": "law",
         "remanence[]": "kind",
         **{f"{place}thickness": "" for place in ("shell.", "shell.layers[].", "regions[].", "regions[].layers[].")},
@@ -142,6 +147,8 @@ class ProblemFile(Table):
     loads: tuple[LoadTable, ...] = ()
     supports: tuple[SupportTable, ...] = ()
     springs: tuple[SpringTable, ...] = ()
+    rigid: tuple[RigidTable, ...] = ()
+    hinges: tuple[HingeTable, ...] = ()
     stages: tuple[StageTable, ...] = ()
     probes: dict[f.ProbeName, f.Position] = {}
     results: ResultsTable = ResultsTable()
@@ -155,11 +162,9 @@ class ProblemFile(Table):
 
     @model_validator(mode="after")
     def _field_is_of_something(self) -> ProblemFile:
-        field = self.field
-        if "field" not in self.model_fields_set or "flux_density" in field.model_fields_set or field.varies:
-            return self
-        if not (self.magnets or self.coils):
-            raise key_error("field.flux_density", "is missing")
+        fault = self.field.uniform_fault
+        if "field" in self.model_fields_set and fault and not (self.field.varies or self.magnets or self.coils):
+            raise key_error(f"field.{fault[0]}", fault[1])
         return self
 
     @model_validator(mode="after")
