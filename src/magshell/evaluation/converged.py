@@ -257,8 +257,8 @@ class Reached(Protocol):
 def converged(discretisation: Discretisation, reached: Reached) -> Converged:
     """What outputs are evaluated of, at a step or another state of the path. (What is held is the state's.)
 
-    Critical points and buckling modes do not keep multipliers of loads and amounts of the field: there they are those of
-    the histories.
+    Critical points and buckling modes do not keep multipliers of loads and amounts of the field: these are then those
+    of the histories.
     """
     loading = discretisation.model.course(reached.stage).at(reached.load_factor)
     loads = getattr(reached, "loads", None)

@@ -39,7 +39,7 @@ from magshell.shell.ties import (
     stretch_directors,
     stretch_increments,
 )
-from magshell.shell.varying_field import add_position_forces, contract_position, position_scratch, slopes_at
+from magshell.shell.varying_field import ElementAt, contract_position, copy_slopes, slopes_scratch
 
 
 class Body(NamedTuple):
@@ -148,7 +148,8 @@ def fill(
     records = workspace()
     w = records[0]
     across = level_scratch(body.by_level, body.levels.shape[2])
-    position = position_scratch(request.field.slopes, size)
+    position = np.zeros((3, max(size, SIZE), 3))
+    slopes = slopes_scratch(request.field.slopes, body.levels.shape[2])
     for e in range(first, min(first + len(out.K), len(body.elements))):
         nodes, Kt, r = body.elements[e], out.K[e - first], out.r[0, e]
         gather(nodes, state, state.alpha[e], layout, v)
@@ -164,9 +165,9 @@ def fill(
             levels = levels[: point.levels]
             point_values(point, enhancement, layout, v, w.x)
             at = e if len(request.field.flux_density) > 1 else 0
-            B, slopes = request.field.flux_density[at, p], slopes_at(request.field.slopes, at, p)
-            mixed = Mixed(stresses.S[e, p], stresses.kappa[e, p])
-            J = section(w, point, levels, body.laws, request, B, slopes, mixed, across)
+            B = request.field.flux_density[at, p]
+            copy_slopes(request.field.slopes, at, p, slopes)
+            J = section(w, point, levels, body.laws, request, B, slopes, stresses.S[e, p], stresses.kappa[e, p], across)
             if not J > 0.0:
                 return e, J
             out.energy[e, INTERNAL] += w.energy[INTERNAL]
@@ -183,10 +184,8 @@ def fill(
                     transpose(GH, HG)
                     rows, target = HG, Kt
                 contract(point, enhancement, layout, T, rows, scratch, target)
-            if position is not None:
-                add_position_forces(w, point, layout, forces)
-                if tangent:
-                    contract_position(w, point, enhancement, layout, T, scratch, position, Kt)
+            here = ElementAt(point, enhancement, layout, T)
+            contract_position(slopes, w, here, scratch, position, forces, Kt, tangent)
             if tangent:
                 add_radial_force(point, layout, w.g, v, radial)
         for number in range(len(body.hold.k)):

@@ -217,7 +217,8 @@ def section(
     request: Request,
     B: FloatArray,
     slopes: FloatArray | None,
-    mixed: Mixed,
+    S_mixed: FloatArray,
+    kappa_mixed: FloatArray,
     across: FloatArray | None,
 ) -> float:
     """Gradient and Hessian of a point that sees w.x; returns the least det F through the thickness.
@@ -269,7 +270,7 @@ def section(
                 couples[INTERNAL, i] -= base[a, j] * t[a, l] - base[a, l] * t[a, j]
         if tangent:
             if request.mixed:
-                _mix(w, mixed.S[k])
+                _mix(w, S_mixed[k])
             stress_vectors(w.R, w.P, G, volume, w.t_mixed)
             moduli_on_legs(w, G, volume)
             _level_hessian(w)
@@ -299,7 +300,7 @@ def section(
         _spin_to_quaternion(w, n2)
         if slopes is not None:
             finish_position(w, by_level)
-    w.energy[INTERNAL] += couple_stress(w, point.couple_metric, n2, mixed.kappa, request.mixed, tangent)
+    w.energy[INTERNAL] += couple_stress(w, point.couple_metric, n2, kappa_mixed, request.mixed, tangent)
     return least
 
 

@@ -27,28 +27,30 @@ from magshell.shell.element import Layout, contract
 from magshell.shell.point import MAGNETIC, PHI, SIZE, Q, Record, W
 
 
-class PositionScratch(NamedTuple):
-    """Rows (31, 3) of a point, and of an element (size, 3)."""
+class ElementAt(NamedTuple):
+    """An element at one of its points: what `contract` takes."""
 
-    rows: FloatArray
-    by_row: FloatArray
-    by_column: FloatArray
-
-
-@allocate
-def position_scratch(slopes: FloatArray | None, size: int) -> PositionScratch | None:
-    """Scratch arrays of one thread; None in a uniform field: then nothing of this file is compiled."""
-    if slopes is None:
-        return None
-    return PositionScratch(np.zeros((SIZE, 3)), np.zeros((size, 3)), np.zeros((size, 3)))
+    point: Record
+    enhancement: FloatArray
+    layout: Layout
+    T: FloatArray
 
 
 @allocate
-def slopes_at(slopes: FloatArray | None, element: int, point: int) -> FloatArray | None:
-    """Those of a point's levels; None in a uniform field."""
+def slopes_scratch(slopes: FloatArray | None, levels: int) -> FloatArray | None:
+    """Derivatives of the field at the levels of a point; None in a uniform field: then nothing of this is compiled."""
     if slopes is None:
         return None
-    return slopes[element, point]
+    return np.zeros((levels, GRADIENTS))
+
+
+@inline
+def copy_slopes(slopes: FloatArray | None, element: int, point: int, own: FloatArray | None) -> None:
+    """Fill those of a point."""
+    if slopes is not None:
+        for k in range(slopes.shape[2]):
+            for i in range(GRADIENTS):
+                own[k, i] = slopes[element, point, k, i]
 
 
 @inline
@@ -148,39 +150,41 @@ def finish_position(w: Record, by_level: bool) -> None:
 
 @inline
 def contract_position(
+    slopes: FloatArray | None,
     w: Record,
-    point: Record,
-    enhancement: FloatArray,
-    layout: Layout,
-    T: FloatArray,
+    at: ElementAt,
     scratch: FloatArray,
-    position: PositionScratch,
+    position: FloatArray,
+    forces: FloatArray,
     Kt: FloatArray,
+    tangent: bool,
 ) -> None:
-    """Add the rows and columns of x̄ of the point's Hessian to an element's transposed matrix."""
-    rows, by_row, by_column = position.rows, position.by_row, position.by_column
-    for side in range(2):  # one call: the compiler makes one copy of `contract`
-        target = by_row if side == 0 else by_column
-        for r in range(SIZE):
+    """Add forces on x̄, and the rows and columns of x̄ of the point's Hessian, to an element's and its transposed matrix.
+
+    `position` (3, at least 31 and the element's values, 3) and `scratch` are scratch.
+    """
+    if slopes is not None:
+        point, layout = at.point, at.layout
+        for n in range(layout.u):
             for i in range(3):
-                rows[r, i] = w.H_rx[r, i] if side == 0 else w.H_x[i, r]
-        target[:, :] = 0.0
-        contract(point, enhancement, layout, T, rows, scratch, target)
-    for n in range(layout.u):
-        N = point.position[n]
-        for i in range(3):
-            at = i * layout.u + n
-            for l in range(len(by_row)):
-                Kt[at, l] += N * by_row[l, i]
-                Kt[l, at] += N * by_column[l, i]
-            for m in range(layout.u):
-                for j in range(3):
-                    Kt[j * layout.u + m, at] += N * point.position[m] * w.H_xx[i, j]
-
-
-@inline
-def add_position_forces(w: Record, point: Record, layout: Layout, forces: FloatArray) -> None:
-    """Add the forces on x̄ to those on u."""
-    for n in range(layout.u):
-        for i in range(3):
-            forces[i * layout.u + n, MAGNETIC] += point.position[n] * w.g_x[i]
+                forces[i * layout.u + n, MAGNETIC] += point.position[n] * w.g_x[i]
+        if tangent:
+            size = len(forces)
+            rows, by_row, by_column = position[0, :SIZE], position[1, :size], position[2, :size]
+            for side in range(2):  # one call: the compiler makes one copy of `contract`
+                target = by_row if side == 0 else by_column
+                for r in range(SIZE):
+                    for i in range(3):
+                        rows[r, i] = w.H_rx[r, i] if side == 0 else w.H_x[i, r]
+                target[:, :] = 0.0
+                contract(point, at.enhancement, layout, at.T, rows, scratch, target)
+            for n in range(layout.u):
+                N = point.position[n]
+                for i in range(3):
+                    place = i * layout.u + n
+                    for l in range(size):
+                        Kt[place, l] += N * by_row[l, i]
+                        Kt[l, place] += N * by_column[l, i]
+                    for m in range(layout.u):
+                        for j in range(3):
+                            Kt[j * layout.u + m, place] += N * point.position[m] * w.H_xx[i, j]
