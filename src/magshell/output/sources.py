@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -18,6 +18,8 @@ from magshell.output.style import COLOURS
 NORTH, SOUTH, COPPER = COLOURS[1], COLOURS[0], "#b87333"
 GAP = 0.62
 """Length of an arrow over the distance between two."""
+REACH = 5.0
+"""How far from the middle of a part a picture of it goes to hold a source, over the part's size."""
 
 
 class Piece(NamedTuple):
@@ -62,10 +64,18 @@ def _of_source(source: Source, name: str) -> Iterator[Piece]:
         yield Piece(half.extract_surface(algorithm="dataset_surface").transform(place, inplace=False), colour, name)
 
 
-def place(plotter: Any, field: Field, amounts: FloatArray) -> None:
-    """Add the magnets and coils of a field to a plotter."""
-    for piece in pieces(field, amounts):
-        plotter.add_mesh(piece.surface, color=piece.colour, ambient=0.55, specular=0.15)
+def place(plotter: Any, drawn: Iterable[Piece], opacity: float = 1.0) -> None:
+    """Add surfaces of magnets and coils to a plotter."""
+    for piece in drawn:
+        plotter.add_mesh(piece.surface, color=piece.colour, ambient=0.55, specular=0.15, opacity=opacity)
+
+
+def extent(drawn: Iterable[Piece], part: FloatArray) -> FloatArray:
+    """Points (n, 3) of surfaces that a picture of a part, seen from its points (m, 3), must hold: none far away."""
+    middle = 0.5 * (part.min(axis=0) + part.max(axis=0))
+    size = float(np.linalg.norm(np.ptp(part, axis=0)))
+    points = np.concatenate([np.zeros((0, 3)), *(np.asarray(piece.surface.points, dtype=float) for piece in drawn)])
+    return np.asarray(points[np.linalg.norm(points - middle, axis=1) < REACH * size])
 
 
 @dataclass(frozen=True, eq=False)
