@@ -166,7 +166,7 @@ def deformed(
     sources: Sequence[Piece],
     camera: Camera,
 ) -> Callable[[Any], None]:
-    """What adds the deformed shell, its undeformed outline, field arrow (tail and head), magnets and coils to a plotter."""
+    """What adds deformed shell, undeformed outline, field arrow (tail and head), magnets and coils to a plotter."""
     import pyvista
 
     surface, mesh, outline = placed.surface, shell.mesh, joints_of(shell).outline

@@ -42,7 +42,7 @@ def draw_shape(
     color: str = "u3",
     camera: ArrayLike | None = None,
 ) -> Image | None:
-    """Draw the deformed shape, true to scale, over the undeformed outline, with the field's direction, magnets and coils.
+    """Draw the deformed shape, true to scale, over the undeformed outline, with the field, magnets and coils.
 
     Parameters
     ----------

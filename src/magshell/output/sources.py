@@ -47,11 +47,12 @@ def pieces(field: Field, amounts: FloatArray) -> list[Piece]:
         for part, own in field.parts(amounts)
         if isinstance(part, MagnetField)
         for source in part.now(own)
-        for piece in _of_source(source, part.name)
+        for piece in of_source(source, part.name)
     ]
 
 
-def _of_source(source: Source, name: str) -> Iterator[Piece]:
+def of_source(source: Source, name: str) -> Iterator[Piece]:
+    """The surfaces of one magnet or coil."""
     surface, poles = source.shape.surface(), source.shape.poles
     place = np.eye(4)
     place[:3, :3], place[:3, 3] = source.turn, source.place
