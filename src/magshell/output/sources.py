@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
-from magshell.magnetics.fields import Field, FieldUnknown, MagnetField, Source
+from magshell.magnetics.fields import Field, MagnetField, Source
+from magshell.magnetics.fields.field import known
 from magshell.mesh.geometry import unit
 from magshell.output.style import COLOURS
 
@@ -130,17 +131,6 @@ class Plane:
         one, other = (np.linspace(0.0, 1.0, count) for count in self.counts)
         shares = np.stack([np.tile(one, len(other)), np.repeat(other, len(one))], axis=1)
         return np.asarray(np.asarray(self.corner, dtype=float) + shares @ self.sides)
-
-
-def known(field: Field, amounts: FloatArray, points: FloatArray) -> FloatArray:
-    """B (n, 3) at points (n, 3); NaN where the field is not known, on wires or outside grids."""
-    try:
-        return field.at(amounts, points, second=False).flux_density
-    except FieldUnknown:
-        if len(points) == 1:
-            return np.full((1, 3), np.nan)
-        half = len(points) // 2
-        return np.concatenate([known(field, amounts, part) for part in (points[:half], points[half:])])
 
 
 def arrows(field: Field, amounts: FloatArray, plane: Plane) -> Any:
