@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 def sources(path: Path, steps: Sequence[Step]) -> tuple[list[dict[str, Any]], dict[str, str]]:
     """What the header says of each surface, and the arrays of corners and normals of their triangles."""
     moved = [list(path.model.field.parts(step.drives)) for step in steps]
-    told, arrays = [], {}
+    told: list[dict[str, Any]] = []
+    arrays: dict[str, str] = {}
     for number, (part, _) in enumerate(moved[0]):
         if not isinstance(part, MagnetField):
             continue
