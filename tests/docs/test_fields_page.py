@@ -11,14 +11,15 @@ import numpy as np
 import pytest
 from problem_files import STRIP, changed
 
-import magshell as ms
 from magshell.magnetics.fields.differences import STEP
 from magshell.magnetics.fields.lattice import NEAREST
 from magshell.problem.building import build
 from magshell.problem.building.field import build_field
 from magshell.problem.reading import check, parse
+from magshell.problem.source_report import driven
 
 PAGE = (pathlib.Path(__file__).parents[2] / "docs" / "fields.md").read_text()
+WITHOUT = changed(STRIP, ('[field]\nflux_density = [0, 0, "2 mT"]\nstops = ["1 mT", "2 mT"]\n', ""))
 BLOCKS = {language: re.findall(rf"```{language}\n(.*?)```", PAGE, re.DOTALL) for language in ("python", "toml")}
 
 
@@ -31,16 +32,23 @@ def test_python(code):
 
 
 def test_problem_file():
-    (text,) = BLOCKS["toml"]
-    without = changed(STRIP, ('[field]\nflux_density = [0, 0, "2 mT"]\nstops = ["1 mT", "2 mT"]\n', ""))
-    file = check(parse(without + text, "page.toml"), "page.toml")
+    text, _ = BLOCKS["toml"]
+    file = check(parse(WITHOUT + text, "page.toml"), "page.toml")
     field = build_field(file, pathlib.Path())
     assert field.stages == 3
     B = field.at(field.ends(3)[2], np.zeros((1, 3))).flux_density[0]
     assert B[0] == pytest.approx(0.8**1.5 * 4e-7 * np.pi * 240 / 0.1, rel=1e-6), "the axis of the pair is X1"
     assert B[2] > 0.1
-    with pytest.raises(ms.InputError, match="a model takes a UniformField"):
-        build(file, "page.toml")
+    assert build(file, "page.toml").model.field.drives == field.drives
+
+
+def test_moving_arm():
+    _, text = BLOCKS["toml"]
+    model = build(check(parse(WITHOUT + text, "page.toml"), "page.toml"), "page.toml").model
+    assert [stage.name for stage in model.stages] == ["far", "approach", "retreat"]
+    assert driven(model, 0) == "drives magnet.multiplier 0 to 1"
+    assert driven(model, 1) == "drives magnet.d3 0 to -65 mm"
+    assert driven(model, 2) == "drives magnet.d3 -65 mm to 0"
 
 
 def test_figures():

@@ -24,7 +24,7 @@ from magshell.solver.history import History
 RADIUS, LENGTH = 10e-3, 16e-3
 RUBBER = MicropolarNeoHookean(135e3, 3.25e6, 13.5e3, 9e-5)
 PROBES = {"tip": (LENGTH, 0, RADIUS), 'edge, "low"': (LENGTH, RADIUS, 0)}
-NOTHING = Loading(np.zeros(3), np.zeros(0), np.zeros((1, 11)))
+NOTHING = Loading(np.zeros(3), np.zeros(0), np.zeros((1, 11)), np.zeros(0))
 LOADS = (0.0, 0.1, 0.3, 0.6, 1.0)
 
 
@@ -82,6 +82,7 @@ class FakeConverged:
         return 5.0 * np.stack([self.state.u, -self.state.u], axis=2)
 
     reactions = ()
+    body_motions = body_forces = np.zeros((0, 2, 3))
     magnetic_torque = (0.0, 0.0, 1e-6)
     acting = "known"
 
@@ -119,10 +120,11 @@ class FakePath:
             outputs=("stress", "membrane_force"),
             named_supports=(),
             springs=(),
+            reactions=(),
             stages=[SimpleNamespace(branch=None)] * 3,
             probe_nodes={name: mesh.node_at(position) for name, position in probes.items()},
             course=lambda stage: SimpleNamespace(
-                at=lambda load_factor: Loading(np.zeros(3), np.zeros(0), np.zeros((1, 11)))
+                at=lambda load_factor: Loading(np.zeros(3), np.zeros(0), np.zeros((1, 11)), np.zeros(0))
             ),
         )
         self.discretisation = FakeDiscretisation(self.model, mesh)
@@ -141,6 +143,7 @@ class FakePath:
         state = State(u * bend, 6 * u * bend, -0.3 * s * bend / RADIUS, q, np.zeros(len(u)), np.zeros((0, 0, 3)))
         return SimpleNamespace(
             number=number, load_factor=load, state=state, flux_density=load * self.model.field.vector,
+            drives=np.array([load, 0.0]),
             stage=0, arc_length=2.0 * load, negative_pivots=int(load == 0.6), loads=np.zeros(0),
             balance=None,
         )  # fmt: skip

@@ -69,11 +69,14 @@ PUBLISHED = [
 ]  # fmt: skip
 
 
-# Of several regions or layers: elements, area (mm²), thickness (mm) and E (kPa) of the layers of each part, probes.
+# Of several regions or layers, or with magnets: elements, area (mm²), thickness (mm) and E (kPa) of the layers of each part, probes.
 MADE_OF = {
     "bilayer-strip": (32, 200.0, {"shell": [(0.6, 100.0), (0.4, 300.0)]}, "tip"),
     "stepped-strip": (32, 200.0, {"shell": [(1.0, 300.0)], "outer": [(0.5, 300.0)]}, "step tip"),
     "starfish": (132, 1.5 * 3**0.5 * 6**2 + 6 * 16 * 4.5, {"shell": [(0.8, 296.0)], "centre": [(1.6, 2960.0)]}, "tip-1 tip-4"),
+    "plate-over-magnet": (100, 100.0, {"shell": [(0.5, 1e6)]}, "corner"),
+    "strip-over-magnet": (20, 40.0, {"shell": [(0.5, 300.0)]}, "tip"),
+    "magnet-approaches": (52, 25.0 + 4 * 13.5 * 4.0, {"shell": [(0.6, 300.0)]}, "tip"),
 }  # fmt: skip
 
 

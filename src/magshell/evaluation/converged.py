@@ -19,6 +19,8 @@ from magshell.evaluation.resultants import Resultants
 from magshell.evaluation.sources import forces_on_sources
 from magshell.evaluation.strain import FACES, Deformation, Face
 from magshell.evaluation.work import Acting, Work, acting, work_between
+from magshell.magnetics.fields.field import known
+from magshell.magnetics.law import X
 from magshell.model.course import Loading
 from magshell.shell import rotation
 from magshell.shell.point import INTERNAL
@@ -168,6 +170,15 @@ class Converged:
         d = self.discretisation
         forces = of_couplings(d.reference, d.couplings, self.fields, self.local_field)
         return self.mean(torque_of_points(d.reference, self.fields, forces))
+
+    def magnetic_force_density(self) -> FloatArray:
+        """Force of the field per undeformed volume (elements, 3), N/m³, mean over the element."""
+        d = self.discretisation
+        return -self.mean(of_couplings(d.reference, d.couplings, self.fields, self.local_field)[..., X : X + 3])
+
+    def flux_density(self) -> FloatArray:
+        """External flux density at the deformed nodes (nodes, 3), T; NaN where the field is not known."""
+        return known(self.discretisation.model.field, self.loading.drives, self.mesh.points + self.displacement)
 
     def director(self) -> FloatArray:
         """Director d at the rows of the patches (rows, 3): that of the sheet and the section."""

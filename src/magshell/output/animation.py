@@ -29,6 +29,8 @@ from magshell.output.labels import bar_title
 from magshell.output.scene import Camera, axes_from, best_axes, darkroom, deformed, field_arrow, fit, lettered
 from magshell.output.shape import INCHES, SCENE, colour_bar, colour_scale, shown_values, triad
 from magshell.output.skin import Placed, Skin, skin_of
+from magshell.output.sources import extent as sources_extent
+from magshell.output.sources import pieces
 from magshell.output.style import ACCENT, DPI, INK, said
 from magshell.output.tessellation import Surface
 
@@ -146,18 +148,23 @@ def film(
     with darkroom(seen, shape, quick=True) as expose:
 
         def picture(frame: Frame) -> Image:
-            number, field = frame.step.number, frame.step.flux_density
+            number, field, drives = frame.step.number, frame.step.flux_density, frame.step.drives
             body, shown = placed(number), values[number]
             if frame.later is not None:
                 after = frame.later.number
                 body = _mixed(body, placed(after), frame.share)
-                shown, field = (
+                shown, field, drives = (
                     one + frame.share * (other - one)
-                    for one, other in ((shown, values[after]), (field, frame.later.flux_density))
+                    for one, other in (
+                        (shown, values[after]),
+                        (field, frame.later.flux_density),
+                        (drives, frame.later.drives),
+                    )
                 )
             arrow = arrow_of(field)
             rgb = colours.to_rgba(shown, bytes=True)[:, :3]
-            scene = expose(deformed(path.model.shell, body, rgb, arrow, seen))
+            sources = pieces(path.model.field, drives)
+            scene = expose(deformed(path.model.shell, body, rgb, arrow, sources, seen))
             whole = images.new("RGBA", front.size, "white")
             whole.alpha_composite(images.fromarray(scene), (0, front.height - shape[1]))
             whole.alpha_composite(front)
@@ -318,7 +325,9 @@ def _look(
     """The camera of all steps, and the arrow of a field, as long as the field is strong."""
     mesh = path.discretisation.mesh
     places = [skin.extent(converged(path.discretisation, step)) for step in steps]
-    extent = np.concatenate([mesh.points, *places])
+    shell = np.concatenate([mesh.points, *places])
+    around = (sources_extent(pieces(path.model.field, step.drives), shell) for step in steps)
+    extent = np.concatenate([shell, *around])
     ends = np.vstack([mesh.points, mesh.points + steps[-1].state.displacement(len(mesh.points))])
     axes = best_axes(ends) if view is None else axes_from(view)
     strongest = max(float(np.linalg.norm(step.flux_density)) for step in steps)

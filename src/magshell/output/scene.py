@@ -7,7 +7,7 @@ body) stays where it is on the picture.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -20,6 +20,9 @@ from magshell.errors import InputError
 from magshell.output.joints import joints_of
 from magshell.output.rendering import require_rendering
 from magshell.output.skin import MOST_ELEMENTS_WITH_EDGES, Placed
+from magshell.output.sources import Piece
+from magshell.output.sources import extent as sources_extent
+from magshell.output.sources import place as place_sources
 from magshell.output.style import ACCENT, INK, PALE
 from magshell.output.tessellation import Tessellation, element_edges
 
@@ -111,6 +114,7 @@ def draw(
     placed: Placed,
     colours: AnyArray,
     field: FloatArray,
+    sources: Sequence[Piece],
     shape: tuple[int, int],
     view: ArrayLike | None = None,
 ) -> tuple[AnyArray, Camera, FloatArray | None]:
@@ -125,6 +129,8 @@ def draw(
         Red, green, blue, 0 to 255.
     field : FloatArray, shape (3,)
         External flux density; only its direction is drawn, nothing if it is zero.
+    sources : sequence of Piece
+        Magnets and coils.
     shape : (int, int)
         Width and height of the picture, pixels.
     view : (3,) array_like, optional
@@ -145,16 +151,22 @@ def draw(
     """
     extent = np.vstack([placed.surface.points, Tessellation(shell.mesh.elements).at_points(shell.mesh.points)])
     axes = best_axes(extent) if view is None else axes_from(view)
+    extent = np.vstack([extent, sources_extent(sources, extent)])
     arrow = field_arrow(field, extent, axes)
     kept = extent if arrow is None else np.vstack([extent, lettered(arrow, axes)])
     camera = fit(kept, axes, shape[0] / shape[1])
-    return photograph(deformed(shell, placed, colours, arrow, camera), camera, shape), camera, arrow
+    return photograph(deformed(shell, placed, colours, arrow, sources, camera), camera, shape), camera, arrow
 
 
 def deformed(
-    shell: Shell, placed: Placed, colours: AnyArray, arrow: FloatArray | None, camera: Camera
+    shell: Shell,
+    placed: Placed,
+    colours: AnyArray,
+    arrow: FloatArray | None,
+    sources: Sequence[Piece],
+    camera: Camera,
 ) -> Callable[[Any], None]:
-    """What adds the deformed shell, its undeformed outline and the field arrow (tail and head) to a plotter."""
+    """What adds deformed shell, undeformed outline, field arrow (tail and head), magnets and coils to a plotter."""
     import pyvista
 
     surface, mesh, outline = placed.surface, shell.mesh, joints_of(shell).outline
@@ -180,6 +192,7 @@ def deformed(
         plotter.add_mesh(lines(mesh.points, outline), color=PALE, **thick)
         if arrow is not None:
             plotter.add_mesh(arrow_body(arrow), color=ACCENT, smooth_shading=True, ambient=0.6)
+        place_sources(plotter, sources)
 
     return place
 

@@ -6,6 +6,7 @@ What is drawn in space is made in `marks.py`; here it is rendered, lettered and 
 from __future__ import annotations
 
 import os
+from itertools import chain
 from textwrap import fill
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -39,6 +40,9 @@ from magshell.output.scene import (
 )
 from magshell.output.shape import triad
 from magshell.output.skin import MOST_ELEMENTS_WITH_EDGES, Hull, own_nodes
+from magshell.output.sources import COPPER, NORTH, SOUTH, Piece, pieces
+from magshell.output.sources import extent as sources_extent
+from magshell.output.sources import place as place_sources
 from magshell.output.style import DPI, GREY, INK, PALE, TEXT, deliver
 from magshell.output.tessellation import Tessellation
 
@@ -58,6 +62,8 @@ LIGHT = {"ambient": 0.72, "diffuse": 0.52, "specular": 0.0}
 ELEVATION = 36.0
 AZIMUTHS = (-60.0, -45.0, -75.0, -30.0, -120.0, -135.0)
 MOST_NAMES = 8
+OPACITY = (1.0, 0.25)
+"""Of magnets and coils: before the first stage, and where they are at the ends of stages."""
 LETTERS_IN_A_LINE = 20
 
 
@@ -106,7 +112,7 @@ def draw_setup(
     triad(corner, scene.camera.axes)
     _scale_bar(figure, scene.camera)
     figure.text(0.035, 0.94, title, va="center", **(TEXT | {"fontsize": 20}))
-    _legend(figure, model.shell, scene.marks, template)
+    _legend(figure, model.shell, scene, template)
     return deliver(figure, file)
 
 
@@ -120,11 +126,14 @@ class SetupScene(NamedTuple):
     camera : Camera
     marks : list of Mark
         What is drawn on the part.
+    sources : set of str
+        Colours of magnets and coils.
     """
 
     picture: AnyArray
     camera: Camera
     marks: list[Mark]
+    sources: set[str]
 
 
 def setup_scene(model: Model, pixels: tuple[int, int], template: bool = False, bare: bool = False) -> SetupScene:
@@ -162,7 +171,9 @@ def setup_scene(model: Model, pixels: tuple[int, int], template: bool = False, b
             *body_marks(model, size, axes),
             *probe_marks(model, size, axes),
         ]
-    kept = np.concatenate([extent, *(mark.extent for mark in marks)])
+    stages = [] if template or bare else [pieces(model.field, now) for now in model.field.ends(len(model.stages))]
+    around = [sources_extent(sources, extent) for sources in stages]
+    kept = np.concatenate([extent, *around, *(mark.extent for mark in marks)])
     camera = fit(kept, axes, pixels[0] / pixels[1])
 
     def place(plotter: Any) -> None:
@@ -172,8 +183,21 @@ def setup_scene(model: Model, pixels: tuple[int, int], template: bool = False, b
             _place_hull(plotter, model, camera, size)
         for mark in marks:
             mark.place(plotter)
+        for number, sources in enumerate(stages):
+            place_sources(
+                plotter, sources if number == 0 else _elsewhere(sources, stages[:number]), OPACITY[number > 0]
+            )
 
-    return SetupScene(photograph(place, camera, pixels), camera, marks)
+    return SetupScene(photograph(place, camera, pixels), camera, marks, {one.colour for one in chain(*stages)})
+
+
+def _elsewhere(sources: list[Piece], before: list[list[Piece]]) -> list[Piece]:
+    """Those of a stage's end that are not where they were before."""
+    return [
+        piece
+        for number, piece in enumerate(sources)
+        if not any(np.allclose(piece.surface.points, there[number].surface.points, atol=1e-9) for there in before)
+    ]
 
 
 def _in_template(model: Model, at_nodes: FloatArray) -> FloatArray:
@@ -307,11 +331,11 @@ def _scale_bar(figure: Any, camera: Camera) -> None:
     axes.set_ylim(0, 1)
 
 
-def _legend(figure: Any, shell: Shell, marks: list[Mark], template: bool) -> None:
+def _legend(figure: Any, shell: Shell, scene: SetupScene, template: bool) -> None:
     from matplotlib.lines import Line2D
 
     handles, names = [], []
-    for mark in marks:
+    for mark in scene.marks:
         if mark.name:
             handles.append(
                 Line2D(
@@ -319,6 +343,10 @@ def _legend(figure: Any, shell: Shell, marks: list[Mark], template: bool) -> Non
                 )
             )
             names.append(mark.name)
+    for name, colour in (("north half of a magnet", NORTH), ("south half", SOUTH), ("coil", COPPER)):
+        if colour in scene.sources:
+            handles.append(Line2D([], [], color=colour, marker="s", linestyle="none", markersize=11))
+            names.append(name)
     groups = _tinted(shell)
     for group, (_, colour) in list(groups.items())[:MOST_NAMES]:
         handles.append(Line2D([], [], color=colour, marker="s", linestyle="none", markersize=11, markeredgecolor=PALE))

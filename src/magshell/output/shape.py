@@ -18,6 +18,7 @@ from magshell.output.labels import bar_title, shown_unit
 from magshell.output.rounding import without_round_off
 from magshell.output.scene import draw
 from magshell.output.skin import Skin, skin_of
+from magshell.output.sources import pieces
 from magshell.output.style import ACCENT, DPI, GREY, TEXT, TICKS, deliver
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ def draw_shape(
     color: str = "u3",
     camera: ArrayLike | None = None,
 ) -> Image | None:
-    """Draw the deformed shape, true to scale, over the undeformed outline, with the field's direction.
+    """Draw the deformed shape, true to scale, over the undeformed outline, with the field, magnets and coils.
 
     Parameters
     ----------
@@ -79,10 +80,10 @@ def draw_shape(
     (values,) = shown_values(path, [shown], output, component, skin)
     colours = ScalarMappable(*colour_scale(values))
     rgb = colours.to_rgba(values, bytes=True)[:, :3]
-    field = shown.flux_density
+    field, sources = shown.flux_density, pieces(path.model.field, shown.drives)
     pixels = (round(DPI * INCHES[0] * SCENE[2]), round(DPI * INCHES[1] * SCENE[3]))
     placed = skin.placed(converged(path.discretisation, shown))
-    scene, seen, arrow = draw(path.model.shell, placed, rgb, field, pixels, camera)
+    scene, seen, arrow = draw(path.model.shell, placed, rgb, field, sources, pixels, camera)
 
     figure = Figure(figsize=INCHES, dpi=DPI, facecolor="white")
     axes = figure.add_axes(SCENE)

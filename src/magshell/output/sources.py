@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -11,13 +11,16 @@ from numpy.typing import ArrayLike
 
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
-from magshell.magnetics.fields import Field, FieldUnknown, MagnetField, Source
+from magshell.magnetics.fields import Field, MagnetField, Source
+from magshell.magnetics.fields.field import known
 from magshell.mesh.geometry import unit
 from magshell.output.style import COLOURS
 
 NORTH, SOUTH, COPPER = COLOURS[1], COLOURS[0], "#b87333"
 GAP = 0.62
 """Length of an arrow over the distance between two."""
+REACH = 5.0
+"""How far from the middle of a part a picture of it goes to hold a source, over the part's size."""
 
 
 class Piece(NamedTuple):
@@ -45,11 +48,12 @@ def pieces(field: Field, amounts: FloatArray) -> list[Piece]:
         for part, own in field.parts(amounts)
         if isinstance(part, MagnetField)
         for source in part.now(own)
-        for piece in _of_source(source, part.name)
+        for piece in of_source(source, part.name)
     ]
 
 
-def _of_source(source: Source, name: str) -> Iterator[Piece]:
+def of_source(source: Source, name: str) -> Iterator[Piece]:
+    """The surfaces of one magnet or coil."""
     surface, poles = source.shape.surface(), source.shape.poles
     place = np.eye(4)
     place[:3, :3], place[:3, 3] = source.turn, source.place
@@ -62,10 +66,18 @@ def _of_source(source: Source, name: str) -> Iterator[Piece]:
         yield Piece(half.extract_surface(algorithm="dataset_surface").transform(place, inplace=False), colour, name)
 
 
-def place(plotter: Any, field: Field, amounts: FloatArray) -> None:
-    """Add the magnets and coils of a field to a plotter."""
-    for piece in pieces(field, amounts):
-        plotter.add_mesh(piece.surface, color=piece.colour, ambient=0.55, specular=0.15)
+def place(plotter: Any, drawn: Iterable[Piece], opacity: float = 1.0) -> None:
+    """Add surfaces of magnets and coils to a plotter."""
+    for piece in drawn:
+        plotter.add_mesh(piece.surface, color=piece.colour, ambient=0.55, specular=0.15, opacity=opacity)
+
+
+def extent(drawn: Iterable[Piece], part: FloatArray) -> FloatArray:
+    """Points (n, 3) of surfaces that a picture of a part, seen from its points (m, 3), must hold: none far away."""
+    middle = 0.5 * (part.min(axis=0) + part.max(axis=0))
+    size = float(np.linalg.norm(np.ptp(part, axis=0)))
+    points = np.concatenate([np.zeros((0, 3)), *(np.asarray(piece.surface.points, dtype=float) for piece in drawn)])
+    return np.asarray(points[np.linalg.norm(points - middle, axis=1) < REACH * size])
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,17 +131,6 @@ class Plane:
         one, other = (np.linspace(0.0, 1.0, count) for count in self.counts)
         shares = np.stack([np.tile(one, len(other)), np.repeat(other, len(one))], axis=1)
         return np.asarray(np.asarray(self.corner, dtype=float) + shares @ self.sides)
-
-
-def known(field: Field, amounts: FloatArray, points: FloatArray) -> FloatArray:
-    """B (n, 3) at points (n, 3); NaN where the field is not known, on wires or outside grids."""
-    try:
-        return field.at(amounts, points, second=False).flux_density
-    except FieldUnknown:
-        if len(points) == 1:
-            return np.full((1, 3), np.nan)
-        half = len(points) // 2
-        return np.concatenate([known(field, amounts, part) for part in (points[:half], points[half:])])
 
 
 def arrows(field: Field, amounts: FloatArray, plane: Plane) -> Any:

@@ -32,13 +32,15 @@ if TYPE_CHECKING:
 VTK_QUADRATIC_QUAD = 23
 VTK_QUADRATIC_TRIANGLE = 22
 END = b"</VTKFile>\n"
+IN_FIELDS_THAT_VARY = ("flux_density", "magnetic_force_density")
 
 
 class VtuWriter(Observer):
     """Write every converged step as a file of quadratic quads and triangles, which ParaView draws curved.
 
     Points are reference positions (m): in ParaView, *Warp By Vector* with `displacement` shows the deformed
-    shape. Point and cell arrays are the usual ones of `magshell.evaluation.outputs` and those that the model asks for;
+    shape. Point and cell arrays are the usual ones of `magshell.evaluation.outputs` and those that the model asks for,
+    and in a field that varies its flux density and force density;
     their units and meaning are in the field data `outputs`, `units` and `meanings` (bytes of UTF-8, a line each),
     beside `load_factor`, `step`, `flux_density` and `flux_density_magnitude` (T). The cell array `region` numbers the
     regions in the field data `region_names`. The time in the PVD file is the load factor plus the number of the
@@ -156,7 +158,8 @@ def grid(discretisation: Discretisation, step: Step | CriticalPoint | BucklingMo
     import pyvista
 
     mesh, patches = discretisation.mesh, patches_of(discretisation.model.shell)
-    outputs = chosen(discretisation.model.outputs)
+    varies = () if discretisation.model.field.is_uniform else IN_FIELDS_THAT_VARY
+    outputs = chosen([*discretisation.model.outputs, *varies])
     cells = np.insert(patches.elements, 0, np.where(mesh.triangles, len(SLOTS), 8), axis=1)
     kept = np.ones(cells.shape, dtype=bool)
     kept[np.ix_(mesh.triangles, 1 + REPEATED)] = False

@@ -195,7 +195,10 @@ def _field(problem: Problem, figures: Whole) -> Iterator[tuple[str, str]]:
         return
     if any(table.vector):
         yield "flux density B", quantity(table.vector, FLUX_DENSITY)
-    yield "|B|", show(figures.field, FLUX_DENSITY)
+    if problem.model.field.is_uniform:
+        yield "|B|", show(figures.field, FLUX_DENSITY)
+    else:
+        yield from source_report.at_shell(problem.model)
     yield "coupling law", table.coupling
     field = problem.model.field
     stops = np.asarray(field.stops, dtype=float).tolist() if isinstance(field, UniformField) else []
@@ -236,7 +239,9 @@ def _stages(problem: Problem) -> Iterator[tuple[str, str]]:
         parts = [f"{stage.control} control"]
         if problem.model.field_magnitude:
             field = ", ".join(show(component, FLUX_DENSITY) for component in end.flux_density)
-            parts.append(f"field ({field})")
+            parts.append(f"field ({field})" if problem.model.field.is_uniform else f"field at the centre ({field})")
+            if not problem.model.field.is_uniform and (driven := source_report.driven(problem.model, number)):
+                parts.append(driven)
         for load, multiplier in zip(problem.model.loads, end.loads, strict=True):
             parts.append(f"{load.kind} × {multiplier:.4g}")
         if stage.target is not None:

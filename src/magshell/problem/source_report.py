@@ -6,9 +6,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from magshell.model.model import Model
 from magshell.problem import schema
 from magshell.problem.building.field import placed
-from magshell.units import ANGLE, FLUX_GRADIENT, LENGTH, show
+from magshell.units import ANGLE, FLUX_DENSITY, FLUX_GRADIENT, LENGTH, NUMBER, show
 from magshell.wording import quantity, vector
 
 
@@ -28,6 +29,30 @@ def lines(file: schema.ProblemFile) -> Iterator[tuple[str, str]]:
         yield "coil system", f"{count} coils calibrated by {field.coils.calibration}"
     if field.spline_spacing is not None:
         yield "splines", f"spacing {show(field.spline_spacing, LENGTH)}"
+
+
+def at_shell(model: Model) -> Iterator[tuple[str, str]]:
+    """Largest flux density and gradient at the undeformed nodes, before the first stage and at each end."""
+    points = model.shell.mesh.points
+    ends = [model.field.at(now, points, second=False) for now in model.field.ends(len(model.stages))]
+    strongest = max(float(np.linalg.norm(values.flux_density, axis=1).max()) for values in ends)
+    steepest = max(float(np.abs(values.gradient).max()) for values in ends)
+    yield "largest |B| at the shell", show(strongest, FLUX_DENSITY)
+    yield "largest ∂B_i/∂x_j", show(steepest, FLUX_GRADIENT)
+
+
+def driven(model: Model, stage: int) -> str:
+    """The amounts of the field that a stage changes, each from and to which value; empty if none."""
+    before, after = model.field.ends(len(model.stages))[stage : stage + 2]
+    changes = zip(model.field.drives, before, after, strict=True)
+    told = [f"{name} {_amount(name, one)} to {_amount(name, two)}" for name, one, two in changes if one != two]
+    return "drives " + ", ".join(told) if told else ""
+
+
+def _amount(name: str, value: float) -> str:
+    kind = name.rpartition(".")[2]
+    dimension = LENGTH if kind in ("d1", "d2", "d3") else ANGLE if kind == "angle" else NUMBER
+    return f"{value:.4g}" if dimension is NUMBER else show(float(value), dimension)
 
 
 def _source(entry: schema.SourceTable, key: str) -> str:

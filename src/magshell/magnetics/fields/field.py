@@ -186,3 +186,14 @@ def _sum(values: Sequence[Values]) -> Values:
     for one in values[1:]:
         total = total.plus(one)
     return total
+
+
+def known(field: Field, amounts: FloatArray, points: FloatArray) -> FloatArray:
+    """B (n, 3) at points (n, 3); NaN where the field is not known, on wires or outside grids."""
+    try:
+        return field.at(amounts, points, second=False).flux_density
+    except FieldUnknown:
+        if len(points) == 1:
+            return np.full((1, 3), np.nan)
+        half = len(points) // 2
+        return np.concatenate([known(field, amounts, part) for part in (points[:half], points[half:])])

@@ -15,6 +15,7 @@ from magshell.output.curve import LOAD_TEXT, abscissa, displacements, load_per_m
 from magshell.output.labels import plain, shown_unit
 from magshell.output.page.arrays import quantised, span, text
 from magshell.output.page.solid import solid
+from magshell.output.page.sources import reached, sources
 from magshell.output.page.stencils import stencils
 from magshell.output.rounding import without_round_off
 from magshell.output.scene import best_axes
@@ -75,6 +76,8 @@ def collect(path: Path, steps: Sequence[Step], color: str, advance: Callable[[fl
     for output, one in zip(shown, coded, strict=True):
         about, arrays[output.name] = one.told()
         outputs.append(about)
+    drawn, of_sources = sources(path, steps)
+    arrays |= of_sources
     magnitudes = [float(np.linalg.norm(step.flux_density)) for step in steps]
     header = {
         "outputs": outputs,
@@ -100,6 +103,7 @@ def collect(path: Path, steps: Sequence[Step], color: str, advance: Callable[[fl
         "stages": path.steps[-1].stage + 1,
         "curves": curves(path),
         "series": series(path),
+        "sources": drawn,
     }
     return Data(header, arrays)
 
@@ -217,6 +221,7 @@ def _hull(path: Path, steps: Sequence[Step]) -> FloatArray:
     skin = skin_of(path.model.shell)
     positions = (skin.extent(converged(path.discretisation, step)) for step in steps)
     extreme = np.concatenate([x[np.unique((x @ directions).argmax(axis=0))] for x in positions])
+    extreme = np.concatenate([extreme, reached(path, steps, extreme)])
     return np.asarray(extreme[np.unique((extreme @ directions).argmax(axis=0))])
 
 

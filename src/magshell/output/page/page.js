@@ -27,6 +27,11 @@ function startShape() {
   scene.rim = scene.addLines(() => ({ width: 1.5, ink: channels("--line", 1), nearer: 3e-3, shown: true }));
   scene.setInstances(scene.faint, "start", body.segments(body.reference, body.edges));
   scene.setInstances(scene.rest, "start", body.segments(body.reference, body.outline));
+  for (const { array, colour, turns, shifts } of header.sources) {
+    const rgb = [1, 3, 5].map((place) => parseInt(colour.slice(place, place + 2), 16) / 255);
+    const pose = () => ({ turn: turns[state.step], shift: shifts[state.step], ink: [...rgb, 1] });
+    scene.addSolid(stored(array, Float32Array), pose);
+  }
   camera = new Camera(canvas, header.hull, header.view, redraw);
   new ResizeObserver(() => {
     canvas.width = Math.round(canvas.clientWidth * devicePixelRatio);

@@ -56,6 +56,21 @@ const ARROWS = [`${PROJECTION}
   in vec3 towards; uniform vec4 ink; out vec4 colour;
   void main() { colour = vec4(ink.rgb * (0.72 + 0.34 * normalize(towards).y), 1.0); }`];
 
+// Magnets and coils: triangles in a frame that turns and moves.
+const SOLID = [`${PROJECTION}
+  in vec3 position, normal; uniform mat3 turn; uniform vec3 shift; out vec3 towards;
+  void main() {
+    towards = axes * (turn * normal);
+    gl_Position = projected(turn * position + shift);
+  }`, `#version 300 es
+  precision highp float;
+  in vec3 towards; uniform vec4 ink; out vec4 colour;
+  void main() {
+    vec3 n = normalize(towards);
+    n = n.z < 0.0 ? -n : n;
+    colour = vec4(ink.rgb * (0.62 + 0.4 * max(dot(n, normalize(vec3(-0.35, 0.55, 0.76))), 0.0)), 1.0);
+  }`];
+
 // Triangles of an arrow from (0, 0, -1/2) to (0, 0, 1/2): shaft and head.
 function arrowParts(sides = 14) {
   const parts = [];
@@ -88,6 +103,7 @@ class Scene {
     this.fill(this.arrow, "part", parts);
     this.arrow.count = parts.length / 3;
     this.lines = [];
+    this.solids = [];
     this.colours = gl.createTexture();
   }
 
@@ -151,6 +167,17 @@ class Scene {
     return lines;
   }
 
+  // A surface of magnets or coils: corners and normals of its triangles; `pose()` gives turn, shift and ink.
+  addSolid(data, pose) {
+    const solid = this.program(SOLID, { position: [3, 0], normal: [3, 0] });
+    const part = (first) => Float32Array.from({ length: data.length / 2 }, (_, i) => {
+      return data[6 * Math.floor(i / 3) + first + (i % 3)];
+    });
+    this.fill(solid, "position", part(0));
+    this.fill(solid, "normal", part(3));
+    this.solids.push({ ...solid, pose, count: data.length / 6 });
+  }
+
   setInstances(drawable, name, data) {
     this.fill(drawable, name, data);
     drawable.instances = data.length / 6;
@@ -189,6 +216,10 @@ class Scene {
     gl.enable(gl.DEPTH_TEST);
     begin(this.surface, { range, nearer: [0] });
     gl.drawElements(gl.TRIANGLES, this.surface.count, gl.UNSIGNED_INT, 0);
+    for (const solid of this.solids) {
+      begin(solid, { ...solid.pose(), nearer: [0] });
+      gl.drawArrays(gl.TRIANGLES, 0, solid.count);
+    }
     drawLines(false);
     if (arrowInk && this.arrow.instances) {
       begin(this.arrow, { ink: arrowInk, nearer: [4e-3] });
