@@ -33,6 +33,7 @@ verify: $(VENV)/installed-dev
 	$(BIN)/python docs/make_element_study.py
 	$(BIN)/python docs/make_incompressible_study.py
 	$(BIN)/python docs/make_layer_study.py
+	$(BIN)/python docs/make_joint_study.py
 	$(BIN)/python docs/make_accuracy_study.py
 	$(BIN)/python docs/make_published_study.py
 	$(BIN)/python docs/make_path_study.py

@@ -87,7 +87,7 @@ KINDS = {
     fields.FluxDensityUnit: "unit of flux density",
     fields.ProbeName: "name",
     fields.Rotation: "list of angles",
-    tuple[fields.PositiveNumber, ...]: "list of numbers in (0, 1], rising",
+    fields.StageStops: "list of numbers in (0, 1], rising, or a whole number",
     fields.Number: "number",
     fields.PositiveNumber: "number > 0",
     fields.Count: "whole number ≥ 1",
@@ -128,7 +128,7 @@ KINDS = {
     dict[fields.Name, fields.PlaneCorner]: "table of points, each two lengths",
     dict[fields.Name, schema.Wall]: "table of walls, see below",
     Folds: "list of folds, see below",
-    tuple[fields.PositiveFluxDensity, ...]: "list of flux densities > 0, rising",
+    fields.FieldStops: "list of flux densities > 0, rising, or a whole number",
     dict[fields.Name, schema.Selection]: "table of selections",
     dict[fields.Name, schema.Block]: "table of blocks",
 }
@@ -382,7 +382,8 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             **HISTORY,
             "rotation_axis": "About which the field turns.",
             "rotation": "Angle by which it is turned at the end of each stage.",
-            "stops": "Magnitudes that the path must hit wherever it passes them; the end is always hit.",
+            "stops": "Magnitudes that the path must hit wherever it passes them; the end is always hit. "
+            "`stops = 20`: 20, evenly spaced.",
             "coupling": "The law that couples field and shell, see the [theory page](theory.md#5-magnetic-coupling).",
             "gradient": "A constant gradient; this and the next are described on the page [Fields](fields.md).",
             "sampled": "A grid, from a file.",
@@ -450,7 +451,8 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "name": "For messages and files.",
             "control": "What is given: the load factor, the length of the path from step to step, or the displacement "
             "of a probe.",
-            "stops": "Load factors of the stage that the path must hit; 1 is always hit.",
+            "stops": "Load factors of the stage that the path must hit; 1 is always hit. `stops = 20`: 20, evenly "
+            "spaced.",
             "probe": "Name of a probe,",
             "component": "the component of its displacement, and",
             "target": "the value at which the stage ends: needed under displacement control; with arc length in place "
@@ -629,7 +631,7 @@ def pages() -> dict[pathlib.Path, dict[str, str]]:
 def outputs_table() -> str:
     """What a result holds."""
     rows = ["| Name | Symbol | Unit | Of each | In files | What it is |", "|---|---|---|---|---|---|"]
-    where = {"point": "node", "patch": "node and patch", "cell": "element"}
+    where = {"point": "node", "sheet": "node and sheet", "patch": "node and patch", "cell": "element"}
     families: dict[str, list[Output]] = {}
     for output in OUTPUTS.values():
         families.setdefault(output.name.removesuffix(f"_{output.face}"), []).append(output)

@@ -25,7 +25,7 @@ MODULI = list(MaterialTable.model_fields)
         ("nu", MODULI, "poissons_ratio"),
         ("Poisson's ratio", MODULI, "poissons_ratio"),
         ("modulus", MODULI, None),
-        ("magnets", TABLES, "remanence"),
+        ("magnets", ["loads", "remanence", "stages"], "remanence"),
         ("magnetisation", TABLES, "remanence"),
         ("forces", TABLES, "loads"),
         ("points", TABLES, "probes"),

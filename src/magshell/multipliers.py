@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -43,3 +44,22 @@ def numbers(history: Sequence[float], where: str, name: str = "history") -> Floa
     if values.ndim != 1 or not values.size or not np.all(np.isfinite(values)):
         raise InputError(f"{where}: {name} is {history!r}; it takes finite numbers, one for each stage")
     return values
+
+
+MOST_STOPS = 10_000
+"""Of evenly spaced ones in a stage."""
+
+
+def spaced(stops: Any, end: float, where: str) -> Any:
+    """So many stops, evenly spaced up to the end, for a whole number; others as they are.
+
+    Raises
+    ------
+    InputError
+        A number that is not positive, or too large.
+    """
+    if isinstance(stops, bool) or not isinstance(stops, int):
+        return stops
+    if not 1 <= stops <= MOST_STOPS:
+        raise InputError(f"{where}: stops is {stops}; as a number of evenly spaced ones it must be 1 to {MOST_STOPS}")
+    return [end * number / stops for number in range(1, stops + 1)] if end else []

@@ -20,7 +20,9 @@ USES = {
         "steps/step-0001.vtu", "critical/point-01.vtu", "checkpoint/step-0007.npz",
     ]),
     "buckling": (["buckling", "strip.toml", "--out", "out"], ["buckling.csv", "buckling/mode-01.vtu"]),
-    "sweep": (SWEEP, ["sweep.csv", "sweep.png", "sweep.toml", "problem.toml", "cells/0001/summary.json"]),
+    "sweep": (SWEEP, [
+        "sweep.csv", "sweep-history.csv", "sweep.png", "sweep.toml", "problem.toml", "cells/0001/summary.json",
+    ]),
     "reproduce": (["reproduce", "strips", "--out", "out"], ["index.html", "reproduction.csv", "strips-curves.png"]),
 }  # fmt: skip
 

@@ -57,6 +57,23 @@ def test_table_cells_and_picture(swept: Path) -> None:
     assert sorted(path.name for path in (swept / "cells").iterdir()) == ["0003", "0004"]
 
 
+def test_all_steps_of_all_cells(swept: Path) -> None:
+    """The histories of the cells below each other, with what the cells are, and units in the header."""
+    with (swept / "sweep-history.csv").open(newline="") as file:
+        heading, *found = csv.reader(file)
+    first = ["cell", "field.flux_density [T]", "shell.thickness [m]", "load_factor", "B1 [T]", "B2 [T]", "B3 [T]"]
+    assert heading[:8] == [*first, "tip.u1 [m]"]
+    for column in ("left.R3 [N]", "left.M2 [N m]", "elastic [J]", "torque2 [N m]", "max_von_mises [Pa]", "stage"):
+        assert column in heading
+    expected = []
+    for cell, thickness in (("0003", "0.0008"), ("0004", "0.0012")):
+        with (swept / "cells" / cell / "history.csv").open(newline="") as file:
+            columns, *rows_of_cell = csv.reader(file)
+        assert [column.split(" [")[0] for column in heading[3:]] == columns
+        expected += [[cell, "0.0015", thickness, *row] for row in rows_of_cell]
+    assert found == expected
+
+
 def test_a_cell_is_a_folder_of_results_that_runs_by_itself(swept: Path, tmp_path: Path) -> None:
     cell, row = swept / "cells" / "0004", rows(swept)[3]
     alone = problem.load(cell / "problem.toml")

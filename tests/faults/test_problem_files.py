@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from problem.loaded import EVERY_LOAD
 from problem.magnetised import FIELDS, SURFACES, TEMPLATES
 from problem.test_staged_problems import STAGED
+from problem.with_sources import EVERY_SOURCE
 from problem_files import JOINTED, LOADED, MIURA, PROFILE, STRIP, with_mesh
 
 import magshell as ms
@@ -63,7 +64,7 @@ FILES = with_mesh(
     '[mesh]\nfile = "part.msh"\nsecond_order = false\n\n[mesh.edge_groups]\nfar = { x1 = "20 mm" }\n\n',
 )
 TEXTS = st.sampled_from(
-    [LOADED, EVERY_LOAD, STAGED, FIELDS, SURFACES, TEMPLATES, FILES, PROFILE, MIURA, JOINTED, *EXAMPLES]
+    [LOADED, EVERY_LOAD, STAGED, FIELDS, SURFACES, TEMPLATES, FILES, PROFILE, MIURA, EVERY_SOURCE, JOINTED, *EXAMPLES]
 )
 
 

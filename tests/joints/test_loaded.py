@@ -11,6 +11,7 @@ import magshell as ms
 from joints.bodies import FLAT, TEE, extruded
 from magshell import solve
 from magshell.equations.instant import Increment, Instant
+from magshell.model.hinge import Hinge
 from magshell.model.rigid_body import RigidBody
 from magshell.solver.settings import Settings
 
@@ -23,11 +24,18 @@ LOADS = {
     "pressure": [ms.Pressure("sheet1", 6e-4), ms.Pressure("sheet0", 3e-4)],
     "weight": [ms.Gravity((0.0003, 0.0006, -0.0015))],
 }
+SPRINGS = [ms.Spring("far", 1e-4, name="spring"), ms.Spring("joint", per_length=2e-4, direction=(1, 2, 3))]
+MOMENT = (3.0, -1.0, 2.0)
 BODIES = {
-    "tee": (TEE, []),
-    "rigid end": (FLAT, [RigidBody("far", point=(2.5, 0.1, 0.7))]),
-    "rigid sheet": (TEE, [RigidBody("sheet2", name="far")]),
-    "rigid joint": (TEE, [RigidBody("joint", point=(0.2, 0.1, 0.3))]),
+    "tee": {"lines": TEE},
+    "rigid end": {"lines": FLAT, "rigid": [RigidBody("far", point=(2.5, 0.1, 0.7))]},
+    "rigid sheet": {"lines": TEE, "rigid": [RigidBody("sheet2", name="far")]},
+    "rigid joint": {"lines": TEE, "rigid": [RigidBody("joint", point=(0.2, 0.1, 0.3))]},
+    "magnet": {"lines": FLAT, "rigid": [RigidBody("far", point=(2.5, 0.1, 0.7), moment=MOMENT, mass=0.1)]},
+    "magnet at a joint": {"lines": TEE, "rigid": [RigidBody("joint", moment=MOMENT, mass=0.1)]},
+    "sprung hinge": {"lines": FLAT, "hinges": [Hinge("joint", 3e-4)]},
+    "sprung hinges of a tee": {"lines": TEE, "hinges": [Hinge("joint", 3e-4)]},
+    "body on springs": {"lines": TEE, "rigid": [RigidBody("far", point=(0.7, 0.2, 1.3))], "springs": SPRINGS},
 }
 HELD = {
     "free": [],
@@ -36,13 +44,13 @@ HELD = {
 }
 
 
-def solved(lines, rigid, loads, supports=()):
+def solved(lines, loads, supports=(), rigid=(), hinges=(), springs=()):
     mesh = extruded(lines)
     magnets = ms.remanence.per_element(np.tile((0.5, 0.1, 0.2), (len(mesh.elements), 1)))
     rubber = ms.MicropolarNeoHookean(1.0, 1.7, length_scale=0.03)
-    shell = ms.Shell(mesh, 0.1, rubber, magnets, density=1.0, rigid=rigid)
+    shell = ms.Shell(mesh, 0.1, rubber, magnets, density=1.0, rigid=rigid, hinges=hinges)
     field, held = ms.UniformField((1e-9, 2e-9, -3e-9)), [ms.Clamp("near"), *supports]
-    model = ms.Model(shell, held, field, loads=loads)
+    model = ms.Model(shell, held, field, loads=loads, springs=springs)
     return solve(model, Settings(tolerance=1e-12))
 
 
@@ -50,7 +58,7 @@ def solved(lines, rigid, loads, supports=()):
 @pytest.mark.parametrize("body", BODIES.values(), ids=BODIES)
 @pytest.mark.parametrize("held", HELD.values(), ids=HELD)
 def test_tangent_in_equilibrium(body, loads, held):
-    path = solved(*body, loads, held)
+    path = solved(loads=loads, supports=held, **body)
     d, step = path.discretisation, path.steps[-1]
     loading = path.model.loading(1.0)
     state, instant = step.state, Instant(step.state, loading)

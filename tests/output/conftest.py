@@ -56,6 +56,9 @@ class FakeConverged:
     def phi(self):
         return self.state.phi
 
+    def normal(self):
+        return self.discretisation.normals
+
     def element_phi(self):
         return self.state.phi[self.mesh.elements]
 
@@ -115,6 +118,7 @@ class FakePath:
             shell=Shell(mesh, 0.9e-3, material, remanence.constant((0.0, 0.0, remanent))),
             outputs=("stress", "membrane_force"),
             named_supports=(),
+            springs=(),
             stages=[SimpleNamespace(branch=None)] * 3,
             probe_nodes={name: mesh.node_at(position) for name, position in probes.items()},
             course=lambda stage: SimpleNamespace(

@@ -122,7 +122,7 @@ def test_nodes_of_a_page_are_those_of_the_faces():
     shell = path.model.shell
     about, arrays = stencils(shell)
     assert about["thick"]
-    hull = Hull(shell.mesh, shell.faces_at_nodes, shell.part_of).nodal(shell.mesh.elements)
+    hull = Hull(shell, shell.part_of).nodal(shell.mesh.elements)
     x = shell.mesh.points[hull.nodes] + hull.heights[:, None] * [0.0, 0.0, 1.0]
     surface = placed(path).surface
     assert len(arrays["heights"]) > 0

@@ -12,6 +12,7 @@ import magshell as ms
 from magshell.errors import InputError
 from magshell.evaluation.converged import converged
 from magshell.mesh.edges import find_edges
+from magshell.output.joints import joints_of
 from magshell.output.solid.cells import solid_grid
 from magshell.output.solid.export import stl, write_solid
 from magshell.output.solid.slab import slab, slab_of, volume
@@ -39,7 +40,13 @@ def shaped(mesh, thickness, phi=0.0):
     points[:, 2] = 0.15 * points[:, 0] ** 2 - 0.1 * points[:, 0] * points[:, 1]
     d = 0.9 * nodal_normals(points, mesh.elements)
     z = np.multiply.outer([-0.5, 0.5], np.broadcast_to(thickness, len(mesh.elements)))[..., None]
-    return slab(mesh.elements, points, d, np.broadcast_to(z + phi * z**2, (*z.shape[:2], 8)))
+    return body_of(mesh, points, d, np.broadcast_to(z + phi * z**2, (*z.shape[:2], 8)))
+
+
+def body_of(mesh, points, directors, t):
+    """A body with directors and heights t in them."""
+    above = t[..., None] * directors[mesh.elements]
+    return slab(joints_of(ms.Shell(mesh, 1e-4, rubber())), points[mesh.elements] + above, above, t)
 
 
 def check_closed(made, body, bodies=1):
@@ -166,7 +173,7 @@ def test_step_of_thickness_has_its_volume():
 
 def test_one_element_thicker_than_its_neighbours_rises_upright():
     mesh = ms.mesh.rectangle(3.0, 3.0, (3, 3))
-    flat = slab(mesh.elements, mesh.points, np.tile([0.0, 0.0, 1.0], (len(mesh.points), 1)), heights_of(mesh, 4))
+    flat = body_of(mesh, mesh.points, np.tile([0.0, 0.0, 1.0], (len(mesh.points), 1)), heights_of(mesh, 4))
     made = surface(flat, 1)
     solid = trimesh.Trimesh(made.points, made.triangles, process=False)
     assert solid.is_watertight
@@ -186,7 +193,7 @@ def test_tube_has_an_inside():
     mesh = ms.mesh.cylinder(10e-3, 20e-3, elements=(12, 3))
     normals = nodal_normals(mesh.points, mesh.elements)
     z = np.broadcast_to(np.array([-0.5e-3, 0.5e-3])[:, None, None], (2, len(mesh.elements), 8))
-    body = slab(mesh.elements, mesh.points, normals, z)
+    body = body_of(mesh, mesh.points, normals, z)
     made = closed_surface(body)
     assert find_edges(mesh.elements).sharing.max() == 2
     check_closed(made, body)

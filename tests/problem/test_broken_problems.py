@@ -55,10 +55,12 @@ BROKEN = [
     Broken("misspelt unit", '"303 kPa"', '"303 Kpa"', "material.shear_modulus", ("'Kpa'", "'kPa'")),
     Broken("no number", '"303 kPa"', '"soft"', "material.shear_modulus", ("'soft'", "number")),
     Broken("stop in mm", '"1 mT", "2 mT"', '"1 mm", "2 mT"', "field.stops[0]", ("length", "flux density")),
+    Broken("no stops at all", 'stops = ["1 mT", "2 mT"]', "stops = 0", "field.stops", ("'0' is not a whole number from 1",)),
+    Broken("number of stops in mT", 'stops = ["1 mT", "2 mT"]', 'stops = "2 mT"', "field.stops", ("'2 mT' is not a whole number from 1",)),
     # the field
     Broken("field without direction", 'flux_density = [0, 0, "2 mT"]', 'magnitude = "2 mT"', "field.direction", ("is missing beside magnitude",)),
     Broken("field twice", "stops", 'magnitude = "2 mT"\ndirection = [0, 0, 1]\nstops', "field.flux_density", ("beside magnitude",)),
-    Broken("field of nothing", 'flux_density = [0, 0, "2 mT"]', "", "field.flux_density", ("is missing; give it, or magnitude and direction",)),
+    Broken("field of nothing", 'flux_density = [0, 0, "2 mT"]\nstops = ["1 mT", "2 mT"]', 'coupling = "couple"', "field.flux_density", ("is missing; give it, or magnitude and direction",)),
     Broken("stop beyond the magnitude", 'flux_density = [0, 0, "2 mT"]', 'magnitude = "1.5 mT"\ndirection = [0, 1, 1]', "field.stops[1]", ("beyond",)),
     # values
     Broken("negative thickness", '"1 mm"\n\n[mat', '"-1 mm"\n\n[mat', "shell.thickness", ("-1 mm", "not positive")),
@@ -206,7 +208,8 @@ BROKEN = [
     Broken("shell as text", '[shell]\nthickness = "1 mm"\n', "", "shell", ("not a table", "write [shell]"), 'shell = "1 mm"\n' + STRIP),
     Broken("list of fields", "[field]", "[[field]]", "field", ("one [field] only",)),
     Broken("list of probes", "[probes]", "[[probes]]", "probes", ("one [probes] only", "tip = [")),
-    Broken("magnets", "[probes]", "[[magnets]]\n[probes]", "magnets", ("Did you mean 'remanence'",)),
+    Broken("magnetisation", "[probes]", "[[magnetisation]]\n[probes]", "magnetisation", ("Did you mean 'remanence'",)),
+    Broken("magnet", "[probes]", "[[magnet]]\n[probes]", "magnet", ("Did you mean 'magnets'",)),
     Broken("contact", "[probes]", "[contact]\n[probes]", "contact", ("there is no contact",)),
     Broken("density of the material", "shear_modulus", "density", "material.density", ("belongs to [shell]",)),
     Broken("fixed", '"clamp"', '"fixed"', "supports[0].kind", ("'fixed'", "Did you mean 'clamp'")),

@@ -12,9 +12,11 @@ from magshell.magnetics import fields
 from magshell.magnetics.fields import COILS, MAGNETS, FieldSum, GradientField, MagnetField, SampledField, UniformField
 from magshell.problem.building import build
 from magshell.problem.building.field import build_field
+from magshell.problem.building.located import at
 from magshell.problem.reading import check, parse
 from magshell.problem.schema import ProblemFile
 from magshell.problem.source_report import lines
+from problem.with_sources import EVERY, EVERY_SOURCE, GRADIENT, entry
 
 MAGNET = """
 [[magnets]]
@@ -24,22 +26,6 @@ height = "10 mm"
 polarisation = [0, 0, "1.3 T"]
 position = [0, 0, "-30 mm"]
 """
-EVERY = {
-    "cuboid": 'sides = ["20 mm", "10 mm", "5 mm"]\npolarisation = [0, 0, "1.3 T"]',
-    "cylinder": 'diameter = "20 mm"\nheight = "10 mm"\npolarisation = ["100 kA/m", 0, 0]',
-    "ring": 'inner_diameter = "8 mm"\nouter_diameter = "20 mm"\nheight = "10 mm"\npolarisation = [0, 0, "1 T"]',
-    "cylinder-segment": 'inner_diameter = 0\nouter_diameter = "20 mm"\nheight = "10 mm"\n'
-    'angles = ["-45 deg", "90 deg"]\npolarisation = [0, 0, "1 T"]',
-    "sphere": 'diameter = "20 mm"\npolarisation = [0, 0, "1 T"]',
-    "dipole": 'moment = [0, 0, "1.2 A m^2"]',
-    "halbach": 'radius = "50 mm"\ncount = 16\nsides = ["10 mm", "10 mm", "20 mm"]\nremanence = "1.3 T"\norder = 2',
-    "loop": 'diameter = "80 mm"\ncurrent = "2 A"\nturns = 10',
-    "polygon": 'corners = [[0, 0, 0], ["10 mm", 0, 0], [0, "10 mm", 0]]\ncurrent = "2 A"',
-    "solenoid": 'diameter = "20 mm"\nheight = "40 mm"\ncurrent = "2 A"\nturns = 100\nlayers = 2\nspacing = "1 mm"',
-    "rectangular": 'sides = ["20 mm", "30 mm"]\nheight = "5 mm"\ncurrent = "2 A"\nturns = 100',
-    "helmholtz": 'radius = "100 mm"\ncurrent = "2 A"\nturns = 100',
-    "maxwell": 'radius = "100 mm"\ncurrent = "2 A"',
-}
 POINTS = np.array([[0.001, 0.002, 0.003], [0.004, -0.006, 0.01]])
 
 
@@ -49,11 +35,6 @@ def read(*added: str, base: str = STRIP) -> ProblemFile:
 
 def field_of(*added: str, base: str = STRIP, folder=None) -> fields.Field:
     return build_field(read(*added, base=base), folder)
-
-
-def entry(shape: str, more: str = "") -> str:
-    key = "magnets" if shape in MAGNETS else "coils"
-    return f'\n[[{key}]]\nshape = "{shape}"\n{EVERY[shape]}\n{more}\n'
 
 
 WITHOUT = changed(STRIP, ('flux_density = [0, 0, "2 mT"]\nstops = ["1 mT", "2 mT"]\n', ""), ("[field]\n", ""))
@@ -127,11 +108,6 @@ def test_splines() -> None:
     assert ("splines", "spacing 1 mm") in list(lines(read(MAGNET, base=base)))
 
 
-GRADIENT = (
-    '\n[field.gradient]\ntensor = [["1 T/m", 0, 0], [0, "100 G/cm", 0], [0, 0, "-2 T/m"]]\ncentre = ["5 mm", 0, 0]\n'
-)
-
-
 def test_gradient() -> None:
     gradient = field_of(GRADIENT).fields[1]
     assert isinstance(gradient, GradientField)
@@ -155,6 +131,12 @@ def test_grid_and_coil_system(tmp_path) -> None:
     (tmp_path / "coils.csv").write_text("1,2\n3\n")
     with pytest.raises(ms.InputError, match=r"field\.coils: coils\.csv: is not a table of numbers"):
         field_of(coils, folder=tmp_path)
+
+
+def test_all_of_them_together() -> None:
+    field = field_of(base=EVERY_SOURCE)
+    assert len(field.fields) == 4, "the uniform part, those that stand still, those that move, the gradient"
+    assert np.isfinite(field.at(field.ends(2)[2], POINTS + 1.0).flux_density).all()
 
 
 def test_words_of_motion() -> None:
@@ -201,7 +183,7 @@ def test_the_model_refuses_it_for_now(tmp_path, capsys) -> None:
         (entry("loop").replace('"2 A"', '"0 A"'), "coils[0].current", "is zero; leave the table out"),
         (entry("loop").replace('"2 A"', '"2 T"'), "coils[0].current", "is a magnetic flux density where a current is"),
         (entry("polygon").replace(', [0, "10 mm", 0]]', "]"), "coils[0].corners", "has 2 entries; expected three"),
-        (entry("dipole").replace("A m^2", "A m"), "magnets[0].moment[2]", "has the unknown unit 'A m'; did you mean"),
+        (entry("dipole").replace("A m^2", "A m"), "magnets[0].moment[2]", "has the unknown unit 'A m'"),
         (GRADIENT.replace('"1 T/m"', '"1 T"'), "field.gradient.tensor[0][0]", "is a magnetic flux density where a"),
         (GRADIENT.replace("tensor", "matrix"), "field.gradient.matrix", "is an unknown key"),
     ],
@@ -233,6 +215,15 @@ def test_refused_by_the_tables(text: str, where: str, what: str) -> None:
 def test_refused_when_built(text: str, message: str, tmp_path) -> None:
     with pytest.raises(ms.InputError, match=message):
         field_of(text, folder=tmp_path)
+
+
+def test_a_point_without_field_keeps_its_kind_when_it_is_located() -> None:
+    field = field_of(entry("sphere"), base=WITHOUT)
+    with (
+        pytest.raises(fields.FieldUnknown, match=r"test\.toml: magnets: the point \(0, 0, 0\.01\) m is on the surface"),
+        at("test.toml"),
+    ):
+        field.at(field.ends(1)[1], np.array([[0.0, 0.0, 0.01]]))
 
 
 def test_an_empty_field_table() -> None:

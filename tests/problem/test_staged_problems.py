@@ -63,6 +63,22 @@ def test_keys_reach_the_model():
     assert model.course(2).at(1.0).flux_density == pytest.approx([2e-3, 0, 0], abs=1e-18)
 
 
+def test_stops_that_are_evenly_spaced():
+    """A whole number of them: of a field in its magnitude, of a stage in the load factor; each is a step."""
+    text = changed(STAGED, ("stops = [0.5]", "stops = 4"))
+    assert built(text).model.stages[1].stops == (0.25, 0.5, 0.75, 1.0)
+    problem = built(changed(STRIP, ('stops = ["1 mT", "2 mT"]', "stops = 5")))
+    assert problem.model.field.stops == pytest.approx([0.4e-3, 0.8e-3, 1.2e-3, 1.6e-3, 2e-3], rel=1e-15)
+    assert dict(describe(problem).sections["Field"])["stops"] == "5 stops, 0.4 mT apart"
+    sizes = [float(step.flux_density[2]) for step in ms.solve(problem.model).steps]
+    for stop in problem.model.field.stops:
+        assert min(abs(size - stop) for size in sizes) < 1e-15
+    assert ms.UniformField([0, 0, 1e-3], stops=2, history=[-2]).stops == pytest.approx([1e-3, 2e-3], rel=1e-15)
+    for wrong in (0, -3, 10**9):
+        with pytest.raises(ms.InputError, match="stops is"):
+            ms.Stage(stops=wrong)
+
+
 def test_stages_are_described():
     lines = dict(describe(built(STAGED)).sections["Stages"])
     assert "until u3 of tip is 0.1 mm" in lines["1 weight"]

@@ -25,8 +25,9 @@ KEY is written as messages write it: shell.thickness, remanence[0].magnitude, st
 VALUES are first:last:count, or a list; a number without a unit takes that of the next one that has one. A single
 quantity for a vector (field.flux_density, the vector of a remanence, the total of a load) is its magnitude: the
 direction stays that of the file, and stops of the field beyond its new end are left out.
-DIR receives sweep.csv (a row for each cell, up to date after each), sweep.png, and cells/0001/ and so on, each a folder
-of results as of `magshell run`. Ctrl-C keeps what is done; --resume, or the same command again, goes on from there."""
+DIR receives sweep.csv (a row for each cell, up to date after each), sweep-history.csv (all steps of all cells, at the
+end), sweep.png, and cells/0001/ and so on, each a folder of results as of `magshell run`. Ctrl-C keeps what is done;
+--resume, or the same command again, goes on from there."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -79,7 +80,7 @@ def run(given: argparse.Namespace) -> int:
     why_not = draw_sweep(settings, cells, outcomes, folder.picture)
     say(out, f"no picture: {why_not}" if why_not else f"picture: {folder.picture}")
     failed = [cell for cell in cells if not outcomes[cell.number].converged]
-    say(out, f"results: {folder.path} (sweep.csv; each cell is a folder of results in cells/)")
+    say(out, f"results: {folder.path} (sweep.csv, sweep-history.csv; each cell is a folder of results in cells/)")
     if failed:
         complain(f"{len(failed)} of {len(cells)} cells are not solved; try them again with --resume {again}")
     return NOT_SOLVED if failed else SOLVED

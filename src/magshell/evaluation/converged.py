@@ -7,10 +7,11 @@ from typing import Protocol
 
 import numpy as np
 
-from magshell.arrays import FloatArray, IntArray
+from magshell.arrays import FloatArray
 from magshell.equations.discretisation import Assembly, Discretisation
 from magshell.equations.instant import Instant
 from magshell.evaluation.balance import Balance, magnetic_torque
+from magshell.evaluation.patches import patches_of
 from magshell.evaluation.points import PointFields, evaluate, level_stretch, of_couplings
 from magshell.evaluation.points import magnetic_torque as torque_of_points
 from magshell.evaluation.reactions import Reaction, held_forces, reactions
@@ -157,13 +158,17 @@ class Converged:
         return self.mean(torque_of_points(d.reference, self.fields, forces))
 
     def director(self) -> FloatArray:
-        """Director d = D + w (nodes, 3)."""
-        layout = self.discretisation.reference.body.layout
-        return self.discretisation.normals + self._filled(self.state.w[: len(self.mesh.points)], layout.w)
+        """Director d at the rows of the patches (rows, 3): that of the sheet and the section."""
+        return self._of_patches(self.element_directors())
 
     def phi(self) -> FloatArray:
-        """Thickness stretch φ (nodes,), 1/m."""
-        return self._filled(self.state.phi[: len(self.mesh.points)], self.discretisation.reference.body.layout.phi)
+        """Thickness stretch φ at the rows of the patches (rows,), 1/m."""
+        return self._of_patches(self.element_phi())
+
+    def normal(self) -> FloatArray:
+        """Unit normal D of the undeformed sheet at the rows of the patches (rows, 3)."""
+        rows = self.discretisation.rows
+        return self._of_patches(rows.normals[rows.elements])
 
     def element_directors(self) -> FloatArray:
         """Director at the nodes of each element (elements, 8, 3): where sections differ each has its own length."""
@@ -188,14 +193,9 @@ class Converged:
         return np.asarray(values)
 
     def rotation(self) -> FloatArray:
-        """Micro-rotation vector (nodes, 3), rad, of magnitude at most π."""
-        q = self.state.q[: len(self.mesh.points)]
-        if self.discretisation.reference.body.layout.q == 4:
-            ends = self._mid_side_ends
-            mean = q[ends[:, 0]] + q[ends[:, 1]]
-            q = q.copy()
-            q[self._mid_sides] = mean / np.linalg.norm(mean, axis=1, keepdims=True)
-        return rotation.logarithm(q)
+        """Micro-rotation vector at the rows of the patches (rows, 3), rad, of magnitude at most π."""
+        q = self._of_elements(self.state.q, self.discretisation.reference.body.layout.q)
+        return rotation.logarithm(self._of_patches(q / np.linalg.norm(q, axis=2, keepdims=True)))
 
     def remanence(self) -> FloatArray:
         """Remanence in the current configuration, J⁻¹ F B̃ (elements, 3), T, mean over the volume."""
@@ -214,23 +214,12 @@ class Converged:
         weights = volume / volume.sum(axis=(1, 2), keepdims=True)
         return np.asarray(np.einsum("epk,epk...->e...", weights, values))
 
-    @cached_property
-    def _mid_sides(self) -> IntArray:
-        return self.mesh.elements[:, 4:].ravel()
-
-    @cached_property
-    def _mid_side_ends(self) -> IntArray:
-        """Corner nodes (mid-sides, 2) on either side of each of `_mid_sides`."""
-        corners = self.mesh.elements[:, :4]
-        return np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2)
-
-    def _filled(self, nodal: FloatArray, carriers: int) -> FloatArray:
-        """A field of an element's first nodes; where these are the corners, mid-sides take the mean of their ends."""
-        if carriers == 8:
-            return nodal
-        values = nodal.copy()
-        values[self._mid_sides] = nodal[self._mid_side_ends].mean(axis=1)
-        return values
+    def _of_patches(self, values: FloatArray) -> FloatArray:
+        """What is one in each patch: from the nodes of the elements (elements, 8, ...) to the rows (rows, ...)."""
+        patches = patches_of(self.discretisation.model.shell)
+        found = np.empty((len(patches.nodes), *values.shape[2:]))
+        found[patches.elements] = values
+        return found
 
 
 class Reached(Protocol):

@@ -40,9 +40,9 @@ class Output:
         SI, empty for a pure number.
     sentence : str
         What it is.
-    where : "point", "patch" or "cell"
+    where : "point", "sheet", "patch" or "cell"
         One row per node of the mesh, per row of `Patches` (a node has one for each smooth patch about it), or per
-        element.
+        element. What is of a "sheet" is equal in all patches of a node that have one sheet and section.
     components : int
         1 for a scalar (one-dimensional array), 3 for a vector (in X1, X2, X3), or as many as there are suffixes.
     evaluate : callable
@@ -61,7 +61,7 @@ class Output:
     symbol: str
     unit: str
     sentence: str
-    where: Literal["point", "patch", "cell"]
+    where: Literal["point", "sheet", "patch", "cell"]
     components: int
     evaluate: Callable[[Converged], AnyArray]
     suffixes: tuple[str, ...] = VECTOR
@@ -212,7 +212,7 @@ OUTPUTS: dict[str, Output] = {
             "d",
             "",
             "Deformed director: unit normal of the undeformed mid-surface plus its difference vector w.",
-            "point",
+            "sheet",
             3,
             lambda converged: converged.director(),
         ),
@@ -221,7 +221,7 @@ OUTPUTS: dict[str, Output] = {
             "phi",
             "1/m",
             "Linear part of the thickness stretch.",
-            "point",
+            "sheet",
             1,
             lambda converged: converged.phi(),
         ),
@@ -230,7 +230,7 @@ OUTPUTS: dict[str, Output] = {
             "theta",
             "rad",
             "Micro-rotation vector: along the axis, as long as the angle.",
-            "point",
+            "sheet",
             3,
             lambda converged: converged.rotation(),
         ),
@@ -239,9 +239,9 @@ OUTPUTS: dict[str, Output] = {
             "D",
             "",
             "Unit normal of the undeformed mid-surface.",
-            "point",
+            "sheet",
             3,
-            lambda converged: converged.discretisation.normals,
+            lambda converged: converged.normal(),
         ),
         Output(
             "remanence",

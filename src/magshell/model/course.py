@@ -94,7 +94,7 @@ class Course(NamedTuple):
 
     def stops(self) -> list[float]:
         """Load factors that the path must hit, 1 the last: the stage's own, and where |B| meets the field's stops."""
-        factors = {1.0, *self.stage.stops}
+        factors = {1.0, *np.asarray(self.stage.stops, dtype=float).tolist()}
         start, change = self.start.field, self.end.field - self.start.field
         for stop in np.asarray(self.field.stops, dtype=float).tolist() if change else ():
             for multiplier in (stop / self.field.magnitude, -stop / self.field.magnitude):

@@ -54,6 +54,8 @@ class Rows(NamedTuple):
         Which unknowns a row has for itself.
     kind : ndarray, shape (rows,)
         What the director is: `FREE`, `STRETCHED`, `TURNED` (by the micro-rotation) or `RIGID`.
+    piece, sheet : ndarray, shape (rows,)
+        First row of the piece and of the sheet of each.
     body : ndarray, shape (rows,)
         Row of the rigid body that moves this one; -1 for none.
     points, normals : ndarray, shape (rows, 3)
@@ -73,6 +75,8 @@ class Rows(NamedTuple):
     source: IntArray
     carried: AnyArray
     kind: IntArray
+    piece: IntArray
+    sheet: IntArray
     body: IntArray
     points: FloatArray
     normals: FloatArray
@@ -176,6 +180,8 @@ def rows_of(shell: Shell, planes: Sequence[SymmetryPlane] = ()) -> Rows:
         source=source,
         carried=_carried(shell, elements, of, source, kind),
         kind=kind,
+        piece=piece,
+        sheet=sheet,
         body=body,
         points=points,
         normals=_normals(shell, elements, of, sheet, planes),

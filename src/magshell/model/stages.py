@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from magshell.errors import InputError, suggest
+from magshell.multipliers import spaced
 
 CONTROLS = ("load", "arc-length", "displacement")
 
@@ -28,8 +29,9 @@ class Stage:
         What is given: the load factor (where that fails, at a limit point, the stage goes on by arc length to the next
         stop); the length of the path from step to step, past any limit point until load factor 1 is reached; or the
         displacement of a probe, while the load factor is found.
-    stops : sequence of float, optional
-        Load factors in (0, 1) that the path must hit, in this order; 1 is always hit.
+    stops : sequence of float or int, optional
+        Load factors in (0, 1) that the path must hit, in this order; 1 is always hit. A whole number: so many, evenly
+        spaced.
     probe, component, target : str, int, float, optional
         A probe, one of its components (1, 2, 3) and the displacement (m) at which the stage ends. Needed under
         displacement control; with arc length, an end in place of load factor 1.
@@ -47,7 +49,7 @@ class Stage:
 
     name: str = ""
     control: str = "load"
-    stops: Sequence[float] = ()
+    stops: Sequence[float] | int = ()
     probe: str | None = None
     component: int | None = None
     target: float | None = None
@@ -58,7 +60,7 @@ class Stage:
         where = f"stage '{self.name}'" if self.name else "stage"
         if self.control not in CONTROLS:
             raise InputError(f"{where}: control is '{self.control}'. {suggest(self.control, CONTROLS)}")
-        stops = tuple(float(stop) for stop in self.stops)
+        stops = tuple(float(stop) for stop in spaced(self.stops, 1.0, where))
         if any(not 0.0 < stop <= 1.0 for stop in stops) or any(b <= a for a, b in pairwise(stops)):
             raise InputError(f"{where}: stops are {list(stops)}; they must rise, from above 0 to at most 1")
         object.__setattr__(self, "stops", stops)

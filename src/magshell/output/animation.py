@@ -131,7 +131,6 @@ def film(
     from PIL import Image as images
 
     output, component = find(color)
-    mesh = path.discretisation.mesh
     skin = skin_of(path.model.shell)
     shown = shown_values(path, steps, output, component, skin)
     values = {step.number: each for step, each in zip(steps, shown, strict=True)}
@@ -158,7 +157,7 @@ def film(
                 )
             arrow = arrow_of(field)
             rgb = colours.to_rgba(shown, bytes=True)[:, :3]
-            scene = expose(deformed(mesh, body, rgb, arrow, seen))
+            scene = expose(deformed(path.model.shell, body, rgb, arrow, seen))
             whole = images.new("RGBA", front.size, "white")
             whole.alpha_composite(images.fromarray(scene), (0, front.height - shape[1]))
             whole.alpha_composite(front)

@@ -20,6 +20,7 @@ from magshell.output.scene import (
     polylines,
     viewing_axes,
 )
+from magshell.output.shape import spread
 from magshell.output.skin import Hull
 from magshell.output.style import INK
 
@@ -98,10 +99,11 @@ class Solid(NamedTuple):
 def faces(path: Path, step: Step, heights: Sequence[float] = (-0.5, 0.5)) -> list[FloatArray]:
     """Deformed positions (nodes, 3) at fractions of the thickness over the mid-surface: x = X + u + z (1 + z φ) d.
 
-    The shell has one thickness.
+    The shell has one thickness and no joints.
     """
     reached, thickness = converged(path.discretisation, step), path.model.shell.greatest_thickness
-    middle, director, phi = reached.mesh.points + reached.displacement, reached.director(), reached.phi()[:, None]
+    middle = reached.mesh.points + reached.displacement
+    director, phi = reached.director()[: len(middle)], reached.phi()[: len(middle), None]
     return [middle + z * (1.0 + z * phi) * director for z in (fraction * thickness for fraction in heights)]
 
 
@@ -126,11 +128,11 @@ def solid(body: Body) -> Solid:
     reached = converged(d, body.step)
     hull = _hull(path, body.copies)
     output, component = find(body.output)
-    nodal = np.asarray(output.evaluate(reached), dtype=float)
-    if nodal.ndim == 2:
-        nodal = nodal[:, component - 1] if component else np.linalg.norm(nodal, axis=1)
+    values = spread(hull, path.model.shell, output, np.asarray(output.evaluate(reached), dtype=float))
+    if values.ndim == 2:
+        values = values[:, component - 1] if component else np.linalg.norm(values, axis=1)
     placed = hull.placed(reached)
-    return Solid(*placed.surface, hull.at_points(nodal), placed.outer, placed.inner)
+    return Solid(*placed.surface, values, placed.outer, placed.inner)
 
 
 def _hull(path: Path, copies: Sequence[Copy]) -> Hull:
@@ -140,7 +142,7 @@ def _hull(path: Path, copies: Sequence[Copy]) -> Hull:
     for number, members in enumerate(mesh.element_groups.values(), start=1):
         group[members] = number
     made = group * len(shell.parts) + shell.part_of
-    return Hull(mesh, shell.faces_at_nodes, made, PIECES, _on_mirror_planes(mesh, copies))
+    return Hull(shell, made, PIECES, _on_mirror_planes(mesh, copies))
 
 
 def _on_mirror_planes(mesh: Mesh, copies: Sequence[Copy]) -> IntArray:

@@ -17,13 +17,14 @@ from numpy.typing import ArrayLike
 
 from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError
+from magshell.output.joints import joints_of
 from magshell.output.rendering import require_rendering
 from magshell.output.skin import MOST_ELEMENTS_WITH_EDGES, Placed
 from magshell.output.style import ACCENT, INK, PALE
 from magshell.output.tessellation import Tessellation, element_edges
 
 if TYPE_CHECKING:
-    from magshell.mesh import Mesh
+    from magshell.model.shell import Shell
 
 OVERSAMPLING = 2
 MARGIN = 1.06
@@ -106,7 +107,7 @@ def fit(points: FloatArray, axes: FloatArray, aspect: float) -> Camera:
 
 
 def draw(
-    mesh: Mesh,
+    shell: Shell,
     placed: Placed,
     colours: AnyArray,
     field: FloatArray,
@@ -117,7 +118,7 @@ def draw(
 
     Parameters
     ----------
-    mesh : Mesh
+    shell : Shell
     placed : Placed
         What is drawn of the shell, where it is.
     colours : AnyArray, shape (points of the surface, 3)
@@ -142,25 +143,26 @@ def draw(
     RenderingUnavailable
         This machine cannot draw without a screen.
     """
-    extent = np.vstack([placed.surface.points, Tessellation(mesh.elements).at_points(mesh.points)])
+    extent = np.vstack([placed.surface.points, Tessellation(shell.mesh.elements).at_points(shell.mesh.points)])
     axes = best_axes(extent) if view is None else axes_from(view)
     arrow = field_arrow(field, extent, axes)
     kept = extent if arrow is None else np.vstack([extent, lettered(arrow, axes)])
     camera = fit(kept, axes, shape[0] / shape[1])
-    return photograph(deformed(mesh, placed, colours, arrow, camera), camera, shape), camera, arrow
+    return photograph(deformed(shell, placed, colours, arrow, camera), camera, shape), camera, arrow
 
 
 def deformed(
-    mesh: Mesh, placed: Placed, colours: AnyArray, arrow: FloatArray | None, camera: Camera
+    shell: Shell, placed: Placed, colours: AnyArray, arrow: FloatArray | None, camera: Camera
 ) -> Callable[[Any], None]:
     """What adds the deformed shell, its undeformed outline and the field arrow (tail and head) to a plotter."""
     import pyvista
 
-    surface, cells = placed.surface, Tessellation(mesh.elements)
+    surface, mesh, outline = placed.surface, shell.mesh, joints_of(shell).outline
+    cells = Tessellation(mesh.elements)
     size, axes = 2 * camera.half_height, camera.axes
     nearer = 2e-3 * size * axes[2]
     behind = -4 * size * axes[2]
-    edges = element_edges(mesh.elements) if len(mesh.elements) <= MOST_ELEMENTS_WITH_EDGES else mesh.boundary_edges
+    edges = element_edges(mesh.elements) if len(mesh.elements) <= MOST_ELEMENTS_WITH_EDGES else outline
     body = pyvista.PolyData.from_regular_faces(surface.points, surface.triangles)
     body.point_data["colours"] = colours
     body.point_data.active_normals = surface.normals
@@ -175,7 +177,7 @@ def deformed(
         plotter.add_mesh(polylines(placed.inner + nearer), color=INK, opacity=0.28, **thin)
         plotter.add_mesh(polylines(placed.outer + nearer), color=INK, **thick)
         plotter.add_mesh(lines(mesh.points + behind, edges), color=PALE, opacity=0.5, **thin)
-        plotter.add_mesh(lines(mesh.points, mesh.boundary_edges), color=PALE, **thick)
+        plotter.add_mesh(lines(mesh.points, outline), color=PALE, **thick)
         if arrow is not None:
             plotter.add_mesh(arrow_body(arrow), color=ACCENT, smooth_shading=True, ambient=0.6)
 

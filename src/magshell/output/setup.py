@@ -16,6 +16,7 @@ from magshell.errors import InputError
 from magshell.magnetics.remanence import placed
 from magshell.mesh.edges import SIDES
 from magshell.model.words import name_of, thickness_of
+from magshell.output.joints import joints_of
 from magshell.output.marks import (
     Mark,
     body_marks,
@@ -149,7 +150,7 @@ def setup_scene(model: Model, pixels: tuple[int, int], template: bool = False, b
     shown = _in_template(model, at_nodes) if template else at_nodes
     extent = np.concatenate([shown.reshape(-1, 3), mesh.points])
     if not (template or model.shell.plain):
-        extent = np.concatenate([extent, *(face.reshape(-1, 3) for face in _faces(model))])
+        extent = np.concatenate([extent, _hull(model)[1].reshape(-1, 3)])
     axes = _view(extent)
     size = float(np.linalg.norm(np.ptp(extent, axis=0)))
     marks = remanence_marks(model, shown, axes, template)
@@ -193,11 +194,10 @@ def _view(points: FloatArray) -> FloatArray:
     return next(axes for axes in views if spread(axes) >= 0.85 * largest)
 
 
-def _faces(model: Model) -> list[FloatArray]:
-    """Positions (elements, 8, 3) of the bottom and the top face of the undeformed body."""
-    shell = model.shell
-    middle, normals = shell.mesh.points[shell.mesh.elements], model.normals[shell.mesh.elements]
-    return [middle + height[..., None] * normals for height in np.moveaxis(shell.faces_at_nodes, 2, 0)]
+def _hull(model: Model) -> tuple[Hull, FloatArray]:
+    """The undeformed body, and positions (2, elements, 8, 3) of its bottom and its top face."""
+    hull = Hull(model.shell, model.shell.part_of)
+    return hull, hull.faces_at_rest(model.rows.normals[model.rows.elements])
 
 
 def tints(shell: Shell) -> AnyArray:
@@ -233,8 +233,8 @@ def _place_hull(plotter: Any, model: Model, camera: Camera, size: float) -> None
     import pyvista
 
     shell = model.shell
-    hull = Hull(shell.mesh, shell.faces_at_nodes, shell.part_of)
-    placed = hull.between(*_faces(model))
+    hull, faces = _hull(model)
+    placed = hull.between(*faces)
     body = pyvista.PolyData.from_regular_faces(placed.surface.points, placed.surface.triangles)
     body.point_data["colours"] = hull.on_elements(tints(shell))
     body.point_data.active_normals = placed.surface.normals
@@ -263,12 +263,12 @@ def _place_body(plotter: Any, shell: Shell, shown: FloatArray, camera: Camera, s
     thin, thick = ({"lighting": False, "line_width": OVERSAMPLING * width} for width in (0.8, 1.8))
     sides = own[:, SIDES].reshape(-1, 3)
     real = sides[:, 0] != sides[:, 1]
-    outer = real & np.isin(mesh.elements[:, 4:].ravel(), mesh.boundary_edges[:, 2])
+    outer = real & np.isin(mesh.elements[:, 4:].ravel(), joints_of(shell).outline[:, 2])
     if len(mesh.elements) <= MOST_ELEMENTS_WITH_EDGES:
         plotter.add_mesh(polylines(cells.edges(positions + nearer, sides[real])), color=INK, opacity=0.22, **thin)
     plotter.add_mesh(polylines(cells.edges(positions + nearer, sides[outer])), color=INK, **thick)
     if template:
-        flat = Tessellation(mesh.elements).edges(mesh.points, mesh.boundary_edges)
+        flat = Tessellation(mesh.elements).edges(mesh.points, joints_of(shell).outline)
         plotter.add_mesh(polylines(flat), color=PALE, **thick)
 
 

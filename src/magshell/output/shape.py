@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from PIL.Image import Image
 
+    from magshell.model.shell import Shell
     from magshell.solver.path import Path
     from magshell.solver.step import Step
 
@@ -74,7 +75,6 @@ def draw_shape(
 
     output, component = find(color)
     shown = _step(path, step)
-    mesh = path.discretisation.mesh
     skin = skin_of(path.model.shell)
     (values,) = shown_values(path, [shown], output, component, skin)
     colours = ScalarMappable(*colour_scale(values))
@@ -82,7 +82,7 @@ def draw_shape(
     field = shown.flux_density
     pixels = (round(DPI * INCHES[0] * SCENE[2]), round(DPI * INCHES[1] * SCENE[3]))
     placed = skin.placed(converged(path.discretisation, shown))
-    scene, seen, arrow = draw(mesh, placed, rgb, field, pixels, camera)
+    scene, seen, arrow = draw(path.model.shell, placed, rgb, field, pixels, camera)
 
     figure = Figure(figsize=INCHES, dpi=DPI, facecolor="white")
     axes = figure.add_axes(SCENE)
@@ -118,13 +118,17 @@ def shown_values(
     """The scalar shown at each step, in the unit of pictures, at the points of the surface."""
     _, factor = shown_unit(output)
     for (values,) in without_round_off(path, [output], steps):
-        if output.where == "patch":
-            spread = skin.at_corners(values[patches_of(path.model.shell).elements])
-        else:
-            spread = skin.at_points(values) if output.where == "point" else skin.on_elements(values)
+        shown = spread(skin, path.model.shell, output, values)
         if output.components > 1:
-            spread = np.linalg.norm(spread, axis=1) if component is None else spread[:, component - 1]
-        yield np.asarray(factor * spread)
+            shown = np.linalg.norm(shown, axis=1) if component is None else shown[:, component - 1]
+        yield np.asarray(factor * shown)
+
+
+def spread(skin: Skin, shell: Shell, output: Output, values: FloatArray) -> FloatArray:
+    """Values of an output at the points of the surface."""
+    if output.where == "point":
+        return skin.at_points(values)
+    return skin.on_elements(values) if output.where == "cell" else skin.at_corners(values[patches_of(shell).elements])
 
 
 def colour_scale(values: AnyArray) -> tuple[Any, Any]:

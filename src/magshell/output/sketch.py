@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray, IntArray
+from magshell.output.joints import outline_of
 from magshell.output.scene import best_axes
 from magshell.output.style import GREY, INK, PALE
 from magshell.output.tessellation import Tessellation, element_edges
@@ -73,11 +74,11 @@ def paint(
     surface = tessellation.surface(mesh.points + displacement)
     at_rest = tessellation.at_points(mesh.points)
     extent = np.vstack([surface.points, at_rest])
-    view = best_axes(extent)
-    edges = element_edges(mesh.elements) if len(mesh.elements) <= MOST_ELEMENTS_WITH_EDGES else mesh.boundary_edges
-    drawn = [Lines(edges, INK, 0.35), Lines(mesh.boundary_edges, INK, 0.8), *lines]
+    view, outline = best_axes(extent), outline_of(mesh)
+    edges = element_edges(mesh.elements) if len(mesh.elements) <= MOST_ELEMENTS_WITH_EDGES else outline
+    drawn = [Lines(edges, INK, 0.35), Lines(outline, INK, 0.8), *lines]
     if np.any(displacement):
-        _outline(axes, tessellation.edges(mesh.points, mesh.boundary_edges) @ view.T)
+        _outline(axes, tessellation.edges(mesh.points, outline) @ view.T)
     _polygons(axes, surface.points @ view.T, surface.triangles, colours, [
         (tessellation.edges(mesh.points + displacement, one.edges) @ view.T, one.colour, one.width) for one in drawn
     ])  # fmt: skip

@@ -2,7 +2,8 @@
 
 A shell of one thickness with the mesh in the middle is shown as its mid-surface. Where thickness, layers or materials
 differ, or the mesh lies at a face, both faces are shown at their true heights, with walls at the outer edges and
-wherever the faces of two neighbours differ, and lines between the regions.
+wherever the faces of two neighbours differ, and lines between the regions. At kinks and joints the faces meet as
+`joints.py` says.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.evaluation.converged import Converged
 from magshell.mesh.edges import SIDES
+from magshell.output.joints import Mitres, joints_of, sides_of
 from magshell.output.tessellation import Surface, Tessellation, element_edges
 from magshell.shell.triangle import REPEATED
 
@@ -33,7 +35,7 @@ class Placed(NamedTuple):
     ----------
     surface : Surface
     inner, outer : FloatArray, shape (k, pieces + 1, 3)
-        Curves: edges of elements; outer edges, steps and borders of regions.
+        Curves: edges of elements; outer edges, kinks, joints, steps and borders of regions.
     """
 
     surface: Surface
@@ -63,17 +65,18 @@ class Skin(Protocol):
 def skin_of(shell: Shell, pieces: int | None = None) -> Skin:
     """What is drawn of a shell, each element cut into `pieces` × `pieces`."""
     if shell.plain:
-        return Sheet(shell.mesh, pieces)
-    return Hull(shell.mesh, shell.faces_at_nodes, shell.part_of, pieces)
+        return Sheet(shell, pieces)
+    return Hull(shell, shell.part_of, pieces)
 
 
 class Sheet:
     """The mid-surface."""
 
-    def __init__(self, mesh: Mesh, pieces: int | None = None) -> None:
-        self._mesh, self._cells = mesh, Tessellation(mesh.elements, pieces)
+    def __init__(self, shell: Shell, pieces: int | None = None) -> None:
+        mesh = shell.mesh
+        self._mesh, self._cells, self._outline = mesh, Tessellation(mesh.elements, pieces), joints_of(shell).outline
         few = len(mesh.elements) <= MOST_ELEMENTS_WITH_EDGES
-        self._edges = element_edges(mesh.elements) if few else mesh.boundary_edges
+        self._edges = element_edges(mesh.elements) if few else self._outline
 
     def at_points(self, values: AnyArray) -> AnyArray:
         """Nodal values at the points."""
@@ -94,34 +97,8 @@ class Sheet:
     def placed(self, reached: Converged) -> Placed:
         """Where it is in a state."""
         x = self._mesh.points + reached.displacement
-        curves = (self._cells.edges(x, edges) for edges in (self._edges, self._mesh.boundary_edges))
+        curves = (self._cells.edges(x, edges) for edges in (self._edges, self._outline))
         return Placed(self._cells.surface(x), *curves)
-
-
-class Sides(NamedTuple):
-    """Sides of the elements that are edges.
-
-    Attributes
-    ----------
-    numbers : IntArray, shape (n,)
-        4 e + s for side s of element e.
-    partners : IntArray, shape (n,)
-        Place in `numbers` of the side of the neighbour; -1 where there is none.
-    """
-
-    numbers: IntArray
-    partners: IntArray
-
-
-def sides_of(mesh: Mesh) -> Sides:
-    """All sides, each with its neighbour."""
-    ends = mesh.elements[:, SIDES].reshape(-1, 3)
-    numbers = np.flatnonzero(ends[:, 0] != ends[:, 1])
-    order = np.argsort(ends[numbers, 2], kind="stable")
-    middles = ends[numbers[order], 2]
-    partners, pairs = np.full(len(numbers), -1), np.flatnonzero(middles[1:] == middles[:-1])
-    partners[order[pairs]], partners[order[pairs + 1]] = order[pairs + 1], order[pairs]
-    return Sides(numbers, partners)
 
 
 class Nodal(NamedTuple):
@@ -140,6 +117,8 @@ class Nodal(NamedTuple):
         its height over the mesh, m.
     inner, outer : IntArray, shape (n, 3)
         Edges: end, end, middle.
+    mitres : Mitres
+        Nodes that lie elsewhere.
     """
 
     elements: IntArray
@@ -149,6 +128,7 @@ class Nodal(NamedTuple):
     heights: FloatArray
     inner: IntArray
     outer: IntArray
+    mitres: Mitres
 
 
 UPSIDE_DOWN = np.array([0, 3, 2, 1, 7, 6, 5, 4])
@@ -161,9 +141,7 @@ class Hull:
 
     Parameters
     ----------
-    mesh : Mesh
-    heights : FloatArray, shape (elements, 8, 2)
-        Of the bottom and the top face over the mesh at the nodes of the elements, m.
+    shell : Shell
     group_of : IntArray, shape (elements,)
         Between elements of different groups a line is drawn.
     pieces : int, optional
@@ -174,23 +152,28 @@ class Hull:
 
     def __init__(
         self,
-        mesh: Mesh,
-        heights: FloatArray,
+        shell: Shell,
         group_of: IntArray,
         pieces: int | None = None,
         open_edges: IntArray | None = None,
     ) -> None:
-        self._mesh, self._heights, self._nodes = mesh, heights, own_nodes(mesh)
+        mesh, heights, joints = shell.mesh, shell.faces_at_nodes, joints_of(shell)
+        self._mesh, self._heights, self._nodes, self._joints = mesh, heights, own_nodes(mesh), joints
         self._cells = Tessellation(self._nodes, pieces)
-        sides = sides_of(mesh)
+        sides = sides_of(joints.poles)
         element, side = np.divmod(sides.numbers, 4)
         inner = sides.partners >= 0
         partner = sides.partners[inner]
         at_sides = heights[element[:, None], SIDES[side]]
+        across = np.where(
+            sides.against[inner, None, None], -at_sides[partner, :, ::-1], at_sides[partner][:, [1, 0, 2]]
+        )
+        apart = ~joints.mitred[element[:, None], SIDES[side]][inner, :, None]
         step, border = ~inner, np.zeros(len(inner), dtype=bool)
-        gap = np.abs(at_sides[inner] - at_sides[partner][:, [1, 0, 2]]).max(axis=(1, 2))
-        step[inner] = gap > SAME * np.abs(heights).max()
-        border[inner] = (group_of[element[inner]] != group_of[element[partner]]) & (np.flatnonzero(inner) < partner)
+        step[inner] = np.abs(apart * (at_sides[inner] - across)).max(axis=(1, 2)) > SAME * np.abs(heights).max()
+        sheet = joints.sheets[element, SIDES[side, 2]]
+        different = (group_of[element[inner]] != group_of[element[partner]]) | (sheet[inner] != sheet[partner])
+        border[inner] = different & (np.flatnonzero(inner) < partner)
         if open_edges is not None:
             step &= ~np.isin(mesh.elements[element, SIDES[side][:, 2]], open_edges)
         triples = self._nodes[element[:, None], SIDES[side]]
@@ -239,14 +222,32 @@ class Hull:
             heights=np.concatenate([top.ravel(), bottom.ravel(), amid[start], amid[end]]),
             inner=np.concatenate([self._inner, self._inner + up]),
             outer=np.concatenate([self._lines, self._lines + up]),
+            mitres=self._mitres(rows, start, end),
         )
 
+    def _mitres(self, rows: IntArray, start: IntArray, end: IntArray) -> Mitres:
+        """Nodes of both faces, then those half-way between them at the ends of the walls."""
+        every, posts = np.arange(self._nodes.size), np.concatenate([start, end])
+        top, bottom, *halves = (
+            self._joints.mitres(rows, self._heights, places, upper)
+            for places in (every, posts)
+            for upper in (True, False)
+        )
+        found = (top, bottom.after(every.size), *(half.after(2 * every.size) for half in halves))
+        shares = np.repeat([1.0, 1.0, 0.5, 0.5], [len(one.nodes) for one in found])
+        numbers = np.concatenate([one.numbers for one in found])
+        numbers[:, 1] *= shares
+        return Mitres(np.concatenate([one.nodes for one in found]), numbers)
+
     def faces(self, reached: Converged) -> FloatArray:
-        """Positions (2, elements, 8, 3) of the bottom and the top face: x = X + u + z (1 + z φ) d, m."""
-        mesh = self._mesh
+        """Positions (2, elements, 8, 3) of the bottom and the top face, m: X + u + z (1 + z φ) d, mitred at kinks."""
+        mesh, z = self._mesh, np.moveaxis(self._heights, 2, 0)
         middle = (mesh.points + reached.displacement)[mesh.elements]
-        director, φ = reached.element_directors(), reached.element_phi()[..., None]
-        return np.stack([middle + z * (1.0 + z * φ) * director for z in np.moveaxis(self._heights, 2, 0)[..., None]])
+        return self._joints.faces(middle, reached.element_directors(), z * (1.0 + z * reached.element_phi()))
+
+    def faces_at_rest(self, normals: FloatArray) -> FloatArray:
+        """The same in the undeformed shell with these normals at the nodes of the elements (elements, 8, 3)."""
+        return self._joints.faces(self._mesh.points[self._mesh.elements], normals, np.moveaxis(self._heights, 2, 0))
 
     def extent(self, reached: Converged) -> FloatArray:
         """Positions of its nodes in a state."""

@@ -12,7 +12,7 @@ from fractions import Fraction
 from functools import partial
 from typing import Annotated, Any, Literal, get_args
 
-from pydantic import AfterValidator, BeforeValidator, StrictBool, ValidationInfo
+from pydantic import AfterValidator, BeforeValidator, Discriminator, StrictBool, Tag, ValidationInfo
 
 from magshell import units
 from magshell.errors import InputError, suggest
@@ -325,6 +325,19 @@ Corners = Annotated[tuple[Corner, Corner, Corner, Corner], _list_of(4, "corners,
 
 PlaneCorner = Annotated[tuple[Length, Length], _list_of(2, "coordinates X1 and X2")]
 Outline = Annotated[tuple[PlaneCorner, ...], BeforeValidator(_outline)]
+
+
+def _count_or_list(value: object) -> str:
+    return "list" if isinstance(value, list | tuple) else "count"
+
+
+FieldStops = Annotated[
+    Annotated[Count, Tag("count")] | Annotated[tuple[PositiveFluxDensity, ...], Tag("list")],
+    Discriminator(_count_or_list),
+]
+StageStops = Annotated[
+    Annotated[Count, Tag("count")] | Annotated[tuple[PositiveNumber, ...], Tag("list")], Discriminator(_count_or_list)
+]
 
 
 def one_of(names: Collection[str]) -> BeforeValidator:

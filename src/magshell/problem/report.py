@@ -195,8 +195,11 @@ def _field(problem: Problem, figures: Whole) -> Iterator[tuple[str, str]]:
     yield "flux density B", quantity(table.vector, FLUX_DENSITY)
     yield "|B|", show(figures.field, FLUX_DENSITY)
     yield "coupling law", table.coupling
-    if table.stops:
-        yield "stops", ", ".join(show(stop, FLUX_DENSITY) for stop in table.stops)
+    stops = np.asarray(problem.model.field.stops, dtype=float).tolist()
+    if isinstance(table.stops, int):
+        yield "stops", f"{counted(len(stops), 'stop')}, {show(stops[0], FLUX_DENSITY)} apart"
+    elif table.stops:
+        yield "stops", ", ".join(show(stop, FLUX_DENSITY) for stop in stops)
     yield "10³ |B| |Brem| / (mu mu0)", f"{figures.magnetic_load:.4g}"
     yield "12 |B| |Brem| / (mu0 E) (L/h)²", f"{figures.bending_load:.4g}"
 

@@ -1,7 +1,7 @@
 """The folder of a sweep: what it was asked for, and where its cells are.
 
 `sweep.toml` says how to go on, `problem.toml` is the file that is varied, `cells/0001/` and so on are folders of
-results, `sweep.csv` is the table, `sweep.png` its picture.
+results, `sweep.csv` is the table, `sweep-history.csv` has all steps, `sweep.png` is a picture.
 """
 
 from __future__ import annotations
@@ -33,6 +33,7 @@ class SweepFolder:
         self.definition = self.path / "sweep.toml"
         self.problem = self.path / "problem.toml"
         self.table = self.path / "sweep.csv"
+        self.histories = self.path / "sweep-history.csv"
         self.picture = self.path / "sweep.png"
         self.cells = self.path / "cells"
         self.stop = self.cells / "stop"
@@ -56,7 +57,9 @@ class SweepFolder:
             return
         if not self.definition.exists() and ((self.path / "summary.json").exists() or self.problem.exists()):
             raise InputError(f"--out {self.path}: holds the results of a run; name another folder")
-        refuse_somebodys(self.path, self.definition.exists(), ("sweep.csv", "sweep.png", "cells/*"))
+        refuse_somebodys(
+            self.path, self.definition.exists(), ("sweep.csv", "sweep-history.csv", "sweep.png", "cells/*")
+        )
         write_atomically(self.problem, source.text.encode())
         write_atomically(self.definition, _definition(source, settings).encode())
 

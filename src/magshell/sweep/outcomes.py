@@ -80,7 +80,7 @@ def table(settings: Sequence[Setting], cells: Sequence[Cell], outcomes: Mapping[
         outcome = outcomes.get(cell.number, WAITING)
         converged = "" if outcome.converged is None else str(outcome.converged)
         figures = [_number(outcome.summary.get(name)) for name in FIGURES.values()]
-        values = [_value(value) for value in cell.values]
+        values = [written_value(value) for value in cell.values]
         reached = [_number(u) for name in probes for u in displacement(outcome, name)]
         lines.append(csv_line([cell.name, *values, converged, outcome.reason, *figures, *reached]))
     return "".join(lines)
@@ -113,7 +113,8 @@ def displacement(outcome: Outcome, probe: str) -> tuple[float | None, float | No
     return reached[0], reached[1], reached[2]
 
 
-def _value(value: Value) -> str:
+def written_value(value: Value) -> str:
+    """A value of a setting in a table, SI where it is a quantity."""
     if value.number is None or isinstance(value.data, int):
         return value.text
     return repr(value.number)

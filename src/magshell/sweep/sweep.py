@@ -1,4 +1,4 @@
-"""The cells of a sweep, solved by workers; the table is up to date after each of them."""
+"""The cells of a sweep, solved by workers; the table is up to date after each of them, the histories at the end."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from magshell.sweep.display import Display
 from magshell.sweep.executors import Workers
 from magshell.sweep.folder import SweepFolder
 from magshell.sweep.grid import Cell
+from magshell.sweep.histories import write_histories
 from magshell.sweep.outcomes import WAITING, Outcome, outcome_in, undeformed, write_table
 
 ATTEMPTS = 2
@@ -76,6 +77,7 @@ def sweep(
     finally:
         workers.close()
         folder.stop.unlink(missing_ok=True)
+        write_histories(folder, settings, cells)
     return outcomes
 
 

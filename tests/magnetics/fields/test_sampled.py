@@ -98,6 +98,32 @@ def test_files_of_every_kind_give_the_same_field(tmp_path, suffix):
     assert np.allclose(field.own(INSIDE, False).flux_density, harmonic(INSIDE), rtol=1e-12, atol=1e-17)
 
 
+COMSOL = "% Model,B.mph\n% Dimension,3\n% Nodes,80\n% Length unit,mm\n% x,y,z,mf.Bx (mT),mf.By (mT),mf.Bz (mT)\n"
+
+
+@pytest.mark.parametrize("separator", [",", "   "])
+def test_an_export_of_comsol(tmp_path, separator):
+    rows = "\n".join(separator.join(map(repr, row)) for row in ROWS.tolist())
+    (tmp_path / "B.csv").write_text(COMSOL + rows + "\n")
+    field = read_grid(tmp_path / "B.csv", "mT", "mm")
+    assert np.allclose(field.own(INSIDE, False).flux_density, harmonic(INSIDE), rtol=1e-12, atol=1e-17)
+    with pytest.raises(InputError, match="its lengths are in 'mm', but length_unit says 'm'"):
+        read_grid(tmp_path / "B.csv", "mT", "m")
+    (tmp_path / "B.csv").write_text(COMSOL + rows.replace(repr(float(ROWS[0, 5])), "NaN", 1))
+    with pytest.raises(InputError, match=r"B\.csv: .*not finite at 1 of 80 positions"):
+        read_grid(tmp_path / "B.csv", "mT", "mm")
+    for text, message in (
+        ("1,2,3,4\n", "its rows have 4 numbers; they must have six"),
+        ("", "its rows have no numbers"),
+    ):
+        (tmp_path / "B.csv").write_text(COMSOL + text)
+        with pytest.raises(InputError, match=message):
+            read_grid(tmp_path / "B.csv", "mT", "mm")
+    (tmp_path / "B.csv").write_text(COMSOL + "1,2,3,4,5,six\n")
+    with pytest.raises(InputError, match=r"B\.csv: could not convert"):
+        read_grid(tmp_path / "B.csv", "mT", "mm")
+
+
 def test_a_vtk_image(tmp_path):
     grid = pyvista.ImageData(dimensions=(4, 5, 6), spacing=(0.01, 0.02, 0.01), origin=(-0.01, 0.0, 0.1))
     grid.point_data["flux"] = harmonic(np.asarray(grid.points))

@@ -12,7 +12,7 @@ from magnetics.fields.cases import SHAPES, around
 from magshell.magnetics import fields
 from magshell.magnetics.fields import COILS, MAGNETS, FieldUnknown, MagnetField
 from magshell.magnetics.fields.differences import harmonic
-from magshell.magnetics.fields.magnets import dipole
+from magshell.magnetics.fields.dipoles import dipole
 
 MU0 = 4e-7 * np.pi
 ORIGIN = np.zeros((1, 3))

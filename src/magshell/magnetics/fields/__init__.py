@@ -4,13 +4,15 @@
 """
 
 from magshell.magnetics.fields.coils import Loop, Polygon, RectangularWinding, Solenoid
+from magshell.magnetics.fields.dipoles import Dipole, Sphere
 from magshell.magnetics.fields.field import Field, FieldSum, FieldUnknown, Values
 from magshell.magnetics.fields.function import FunctionField
 from magshell.magnetics.fields.grids import read_grid
 from magshell.magnetics.fields.laboratory import CoilSystem, GradientField
-from magshell.magnetics.fields.magnets import Cuboid, Cylinder, CylinderSegment, Dipole, Ring, Sphere
+from magshell.magnetics.fields.magnets import Cuboid, Cylinder
 from magshell.magnetics.fields.motion import Motion
 from magshell.magnetics.fields.polyhedron import Polyhedron
+from magshell.magnetics.fields.rings import CylinderSegment, Ring
 from magshell.magnetics.fields.sampled import SampledField
 from magshell.magnetics.fields.sets import HALBACH_KEYS, PAIR_KEYS, halbach, helmholtz, maxwell
 from magshell.magnetics.fields.shapes import Shape

@@ -24,11 +24,11 @@ class FieldUnknown(InputError):
 
     Attributes
     ----------
-    position : ndarray, shape (3,)
+    position : ndarray, shape (3,), or None
         The point in the frame of the field, m.
     """
 
-    def __init__(self, message: str, position: FloatArray) -> None:
+    def __init__(self, message: str, position: FloatArray | None = None) -> None:
         super().__init__(message)
         self.position = position
 

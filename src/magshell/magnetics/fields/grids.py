@@ -1,6 +1,7 @@
 """Grids of B from files: tables in CSV, VTK images and rectilinear grids, arrays of NumPy.
 
 * CSV with the columns `x1,x2,x3,b1,b2,b3` (see `magshell.tables`): one row per position, in any order.
+* COMSOL's export (`.csv`, `.txt`): lines of comment that begin with %, then rows x, y, z, Bx, By, Bz.
 * `.vti`, `.vtr`, `.vtk`: a point array of three components, `B` or the only one.
 * `.npz` with the arrays `x1`, `x2`, `x3` and `B` (n1, n2, n3, 3); `.npy` with rows x1, x2, x3, B1, B2, B3.
 """
@@ -18,6 +19,7 @@ import numpy as np
 from magshell import units
 from magshell.arrays import FloatArray
 from magshell.errors import InputError, suggest
+from magshell.files import first_line
 from magshell.magnetics.fields.motion import Motion
 from magshell.magnetics.fields.sampled import SampledField
 from magshell.tables import Columns, read_table, unreadable
@@ -61,7 +63,9 @@ def read_grid(
         raise InputError(f"{path.name}: a grid is read from {', '.join(READERS)}; '{path.suffix}' is none of them")
     if not path.is_file():
         raise InputError(f"{path}: there is no such file")
-    if suffix in (".csv", ".txt"):
+    if suffix in (".csv", ".txt") and first_line(path).startswith("%"):
+        axes, B = _arranged(path.name, *_of_comsol(path, length_unit))
+    elif suffix in (".csv", ".txt"):
         table = read_table(
             path,
             Columns(FLUX, units.FLUX_DENSITY, flux_density_unit, "flux_density_unit"),
@@ -85,6 +89,37 @@ def _factor(unit: str, dimension: units.Dimension) -> float:
     if value is None:
         raise InputError(f"{units.quoted(unit)} is not a unit of {dimension.name}. {suggest(unit, dimension.units)}")
     return value
+
+
+def _of_comsol(path: pathlib.Path, length_unit: str) -> tuple[FloatArray, FloatArray]:
+    """Positions and values of an export of COMSOL, whose comments name the unit of lengths."""
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except (OSError, ValueError) as error:
+        raise InputError(unreadable(path, error)) from None
+    lines = text.splitlines()
+    comments = [line[1:].strip() for line in lines if line.startswith("%")]
+    for comment in comments:
+        key, _, said = comment.replace('"', "").partition("Length unit")
+        own = said.strip(" :,") if not key else ""
+        if own and units.LENGTH.value(own) != units.LENGTH.value(length_unit):
+            raise InputError(
+                f"{path.name}: its lengths are in {units.quoted(own)}, but length_unit says '{length_unit}'"
+            )
+    rows = [line.replace(",", " ").split() for line in lines if line.strip() and not line.startswith("%")]
+    if not rows or any(len(row) != 6 for row in rows):
+        found = sorted({len(row) for row in rows})
+        raise InputError(
+            f"{path.name}: its rows have {' or '.join(map(str, found)) or 'no'} numbers; they must have six: x, y, z, "
+            "Bx, By, Bz. Export these three expressions on a regular grid in three dimensions"
+        )
+    try:
+        numbers = np.array(rows, dtype=float)
+    except ValueError as error:
+        raise InputError(f"{path.name}: {error}") from None
+    if not np.isfinite(numbers[:, :3]).all():
+        raise InputError(f"{path.name}: a position is not finite")
+    return numbers[:, :3], numbers[:, 3:]
 
 
 def _arranged(name: str, places: FloatArray, values: FloatArray) -> tuple[list[FloatArray], FloatArray]:

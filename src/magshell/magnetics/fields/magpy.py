@@ -13,8 +13,10 @@ import numpy as np
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
 from magshell.magnetics.fields.coils import Loop, Polygon
-from magshell.magnetics.fields.magnets import Cuboid, Cylinder, CylinderSegment, Dipole, Ring, Sphere
+from magshell.magnetics.fields.dipoles import Dipole, Sphere
+from magshell.magnetics.fields.magnets import Cuboid, Cylinder
 from magshell.magnetics.fields.polyhedron import Polyhedron
+from magshell.magnetics.fields.rings import CylinderSegment, Ring
 from magshell.magnetics.fields.shapes import Shape
 
 

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
 from magshell.magnetics.fields.field import Field, Values
-from magshell.multipliers import amplitudes, numbers
+from magshell.multipliers import amplitudes, numbers, spaced
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,8 +27,9 @@ class UniformField(Field):
     ----------
     flux_density : array_like, shape (3,)
         At multiplier 1, T.
-    stops : sequence of float
-        Magnitudes of flux density, T, that the load path must hit wherever the multiplier passes them.
+    stops : sequence of float or int
+        Magnitudes of flux density, T, that the load path must hit wherever the multiplier passes them. A whole number:
+        so many, evenly spaced up to the largest.
     history : sequence of float, optional
         Multiplier at the end of each stage of the path; by default it grows to 1 in the first and stays.
     rotation_axis : array_like, shape (3,), optional
@@ -57,13 +58,16 @@ class UniformField(Field):
     def __post_init__(self) -> None:
         try:
             vector = np.array(self.flux_density, dtype=float)
-            stops = np.array(self.stops, dtype=float).reshape(-1)
         except (TypeError, ValueError) as error:
             raise InputError(f"field: flux_density and stops are numbers (T): {error}") from None
         if vector.shape != (3,) or not np.all(np.isfinite(vector)):
             raise InputError(f"field: flux_density is {self.flux_density!r}; it needs 3 finite components (T)")
         largest = 1.0 if self.history is None else float(np.abs(numbers(self.history, "field")).max())
         magnitude = largest * float(np.linalg.norm(vector))
+        try:
+            stops = np.array(spaced(self.stops, magnitude, "field"), dtype=float).reshape(-1)
+        except (TypeError, ValueError) as error:
+            raise InputError(f"field: stops are numbers (T): {error}") from None
         if not np.all(np.isfinite(stops)) or np.any(np.diff(stops) <= 0.0) or np.any(stops <= 0.0):
             raise InputError(f"field: stops are {stops.tolist()} T; they must be positive and increasing")
         if stops.size and stops[-1] > magnitude * (1.0 + 1e-12):

@@ -1,3 +1,19 @@
+// Where sheets meet at a kink: puts the points (flat) of `mitres`, at nodes (flat), where the faces of the sheets cut each
+// other, a sum of weight (z + phi z²) |d| along d'. `rows` has the row of each point in `nodes`, directors and phi.
+function mitre(points, mitres, numbers, nodes, rows, directors, phi) {
+  const length = (row) => Math.hypot(...directors.map((column) => column[row] || 0)) || 1;
+  for (let i = 0; i < mitres.length; i += 3) {
+    const n = rows[mitres[i]];
+    for (let k = 0; k < 3; k++) points[3 * mitres[i] + k] = nodes[3 * n + k];
+  }
+  for (let i = 0, j = 0; i < mitres.length; i += 3, j += 2) {
+    const [point, along, at] = mitres.subarray(i, i + 3);
+    const [z, weight] = numbers.subarray(j, j + 2);
+    const rise = (weight * z * (1 + z * (phi[at] || 0)) * length(at)) / length(along);
+    for (let k = 0; k < 3; k++) points[3 * point + k] += rise * (directors[k][along] || 0);
+  }
+}
+
 // The curved elements as small triangles and lines, interpolated between the nodes by the elements' own functions.
 
 class Body {
@@ -13,6 +29,8 @@ class Body {
     this.thick = mesh.thick; // both faces are drawn: nodes of their own, each at a height over one of the mesh
     this.nodes = this.thick && stored("nodes", Uint32Array);
     this.heights = this.thick && stored("heights", Float32Array);
+    this.mitres = this.thick && stored("mitres", Uint32Array);
+    this.mitreNumbers = this.thick && stored("mitre-numbers", Float32Array);
     this.drawnEdges = this.thick ? stored("drawn-edges", Uint32Array) : this.edges;
     this.drawnOutline = this.thick ? stored("drawn-outline", Uint32Array) : this.outline;
     this.along = mesh.along; // functions of an edge's nodes (end, end, middle) at points along it
@@ -60,6 +78,7 @@ class Body {
       const n = nodes[i], z = heights[i] * (1 + heights[i] * (phi[n] || 0));
       for (let k = 0; k < 3; k++) drawn[3 * i + k] = moved[3 * n + k] + z * (directors[k][n] || 0);
     }
+    mitre(drawn, this.mitres, this.mitreNumbers, moved, nodes, directors, phi);
     return drawn;
   }
 

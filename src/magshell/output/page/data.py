@@ -60,8 +60,8 @@ def collect(path: Path, steps: Sequence[Step], color: str, advance: Callable[[fl
     first, component = find(color)
     shown = page_outputs(path, first)
     kinds, arrays = stencils(path.model.shell)
-    body, arrays_of_body = solid(path, steps)
-    arrays |= arrays_of_body | {
+    levels, arrays_of_levels = solid(path, steps)
+    arrays |= arrays_of_levels | {
         "points": text(mesh.points[patches.nodes], "<f4"),
         "sequential": text(_colours("viridis"), "u1"),
         "diverging": text(_colours("coolwarm"), "u1"),
@@ -80,7 +80,7 @@ def collect(path: Path, steps: Sequence[Step], color: str, advance: Callable[[fl
         "outputs": outputs,
         "colour": f"{first.name} {_column(first, component)}",
         "mesh": kinds,
-        "solid": body,
+        "solid": levels,
         "edges": len(mesh.elements) <= MOST_ELEMENTS_WITH_EDGES,
         "hull": _hull(path, steps).tolist(),
         "view": _view(path),

@@ -192,7 +192,6 @@ function choose() {
 function listen() {
   at("colour").addEventListener("change", () => { choose(); showColours(); });
   at("range").addEventListener("change", showColours);
-  at("stl").hidden = !header.solid;
   at("stl").addEventListener("click", () => saveSolid(state.step));
   at("curve").addEventListener("change", () => curves.show(Number(at("curve").value)));
   for (const id of ["edges", "arrows", "undeformed"]) at(id).addEventListener("change", showShape);

@@ -5,12 +5,16 @@ function solidPoints(step) {
   const { heights, kinds } = header.solid;
   const [u, d] = ["displacement", "director"].map((name) => quantities.get(name).columns(step));
   const t = new Quantity(heights).column(step, 0);
-  const reference = stored("points", Float32Array);
+  const phi = quantities.get("phi").column(step, 0);
+  const moved = Float64Array.from(stored("points", Float32Array));
+  for (let i = 0; i < moved.length; i++) moved[i] += u[i % 3][Math.floor(i / 3)];
   const nodes = stored("solid-nodes", Uint32Array);
   const level = new Float64Array(3 * nodes.length);
   nodes.forEach((node, i) => {
-    for (let c = 0; c < 3; c++) level[3 * i + c] = 1e3 * (reference[3 * node + c] + u[c][node] + t[i] * d[c][node]);
+    for (let c = 0; c < 3; c++) level[3 * i + c] = moved[3 * node + c] + t[i] * d[c][node];
   });
+  const [mitres, numbers] = [stored("solid-mitres", Uint32Array), stored("solid-mitre-numbers", Float32Array)];
+  mitre(level, mitres, numbers, moved, nodes, d, phi);
   const parts = kinds.map(({ N }, i) => {
     const levels = stored(`solid-levels-${i}`, Uint32Array);
     return { N, levels, size: (levels.length / N[0].length) * N.length };
@@ -26,7 +30,7 @@ function solidPoints(step) {
     for (let n = 0; n < f.length; n++) {
       for (let c = 0; c < 3; c++) sum[c] += f[n] * level[3 * levels[face * f.length + n] + c];
     }
-    points.set(sum, 3 * i);
+    points.set(sum.map((x) => 1e3 * x), 3 * i);
   });
   return points;
 }

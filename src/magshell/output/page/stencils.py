@@ -8,6 +8,7 @@ import numpy as np
 
 from magshell.arrays import IntArray
 from magshell.evaluation.patches import patches_of
+from magshell.output.joints import joints_of
 from magshell.output.page.arrays import text
 from magshell.output.skin import Hull
 from magshell.output.tessellation import Tessellation, element_edges
@@ -31,18 +32,21 @@ def stencils(shell: Shell) -> tuple[dict[str, Any], dict[str, str]]:
     dict of str to str
         `elements-I`, `numbers-I`: rows of `Patches` and numbers of the elements of kind I; `edges`, `outline`: edges of
         the mesh. Of a thick body the elements have nodes of their own: `nodes`, `heights` are the row and the height
-        over the mesh of each, `drawn-edges` and `drawn-outline` their edges.
+        over the mesh of each, `mitres` and `mitre-numbers` the `Mitres` of those that lie elsewhere, `drawn-edges` and
+        `drawn-outline` their edges.
     """
     mesh, rows = shell.mesh, patches_of(shell).elements
-    arrays = {"edges": text(element_edges(mesh.elements), "<u4"), "outline": text(mesh.boundary_edges, "<u4")}
+    arrays = {"edges": text(element_edges(mesh.elements), "<u4"), "outline": text(joints_of(shell).outline, "<u4")}
     if shell.plain:
         kinds, along = _lattices(rows, np.arange(len(rows)), len(rows), arrays)
         return {"kinds": kinds, "along": along, "thick": False}, arrays
-    hull = Hull(mesh, shell.faces_at_nodes, shell.part_of).nodal(rows)
+    hull = Hull(shell, shell.part_of).nodal(rows)
     kinds, along = _lattices(hull.elements, hull.element_of, hull.tops, arrays)
     arrays |= {
         "nodes": text(hull.nodes, "<u4"),
         "heights": text(hull.heights, "<f4"),
+        "mitres": text(hull.mitres.nodes, "<u4"),
+        "mitre-numbers": text(hull.mitres.numbers, "<f4"),
         "drawn-edges": text(hull.inner, "<u4"),
         "drawn-outline": text(hull.outer, "<u4"),
     }

@@ -5,7 +5,8 @@ On the director d through a node at x, the level at height z of the undeformed s
     x + t d,      t = z + φ z²,
 
 with the thickness stretch φ. The faces go through the levels at both ends of the thickness of each element, and
-between them the body is ruled: straight from the lower face to the upper one.
+between them the body is ruled: straight from the lower face to the upper one. Where sheets meet at a kink the faces are
+mitred; other sheets at a joint, and those beside a hinge, are closed bodies of their own, which overlap there.
 """
 
 from __future__ import annotations
@@ -15,10 +16,9 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray, IntArray
-from magshell.errors import InputError
 from magshell.evaluation.converged import Converged
-from magshell.mesh import Mesh
-from magshell.mesh.edges import find_edges, is_triangle
+from magshell.mesh.edges import is_triangle
+from magshell.output.joints import Joints, joints_of
 from magshell.shell import triangle
 from magshell.shell.shape_functions import gauss_legendre, serendipity
 
@@ -34,12 +34,13 @@ class Slab(NamedTuple):
     Attributes
     ----------
     elements : ndarray, shape (elements, 8)
-        Nodes.
+        Poles: neighbours that share one share their levels there (`magshell.output.joints`).
     levels : ndarray, shape (levels, 3)
-        Positions on the directors, m: node by node, at each node from below.
+        Positions, m: pole by pole, at each pole from below.
     above : ndarray, shape (levels, 3)
         The same from the node, m.
-    node_of : ndarray, shape (levels,)
+    holder : ndarray, shape (levels,)
+        A place in `at` (flat) that has the level.
     at : ndarray, shape (2, elements, 8)
         Level of the lower and of the upper face.
     """
@@ -47,7 +48,7 @@ class Slab(NamedTuple):
     elements: IntArray
     levels: FloatArray
     above: FloatArray
-    node_of: IntArray
+    holder: IntArray
     at: IntArray
 
     @property
@@ -66,43 +67,48 @@ class Slab(NamedTuple):
 
 
 def slab_of(reached: Converged) -> Slab:
-    """The body at a converged state.
-
-    Raises
-    ------
-    InputError
-        More than two elements meet at an edge: there the body has no outside of its own.
-    """
+    """The body at a converged state."""
     mesh = reached.mesh
-    if not has_outside(mesh):
-        raise InputError("export: more than two elements meet at an edge; a body of such a mesh is not made yet")
-    return slab(mesh.elements, mesh.points + reached.displacement, reached.director(), heights_of(reached))
+    joints, middle = joints_of(reached.discretisation.model.shell), (mesh.points + reached.displacement)[mesh.elements]
+    t = heights_of(reached)
+    faces = joints.faces(middle, reached.element_directors(), t)
+    return slab(joints, faces, faces - middle, (1.0 + reached.element_stretch()) * t)
 
 
 def heights_of(reached: Converged) -> FloatArray:
     """Heights t (2, elements, 8) of both faces at the nodes of each element, in directors."""
     z = np.moveaxis(reached.discretisation.model.shell.faces_at_nodes, 2, 0)
-    return np.asarray((1.0 + reached.element_stretch()) * (z + reached.element_phi() * z**2))
+    return np.asarray(z + reached.element_phi() * z**2)
 
 
-def has_outside(mesh: Mesh) -> bool:
-    """Whether at most two elements meet at each edge."""
-    return bool((find_edges(mesh.elements).sharing <= 2).all())
+def slab(joints: Joints, faces: FloatArray, above: FloatArray, heights: FloatArray) -> Slab:
+    """The body with faces at given positions.
 
-
-def slab(elements: IntArray, middle: FloatArray, director: FloatArray, heights: FloatArray) -> Slab:
-    """The body with nodes (nodes, 3), directors (nodes, 3) and heights t (2, elements, 8) of both faces."""
-    nodes = np.broadcast_to(elements, heights.shape).ravel()
-    t = heights.ravel()
-    order = np.lexsort((t, nodes))
-    sorted_nodes, sorted_t = nodes[order], t[order]
+    Parameters
+    ----------
+    joints : Joints
+    faces, above : ndarray, shape (2, elements, 8, 3)
+        Lower and upper face, m: positions, and from the nodes.
+    heights : ndarray, shape (2, elements, 8)
+        Of both, m; equal heights at a pole are one level.
+    """
+    largest = np.abs(heights).max()
+    ends = np.where(joints.upside, -largest, largest) * np.array([-1.0, 1.0])[:, None, None]
+    t = np.where(joints.mitred, ends, heights).ravel()
+    poles = np.broadcast_to(joints.poles, heights.shape).ravel()
+    order = np.lexsort((t, poles))
     new = np.ones(len(order), dtype=bool)
-    new[1:] = (np.diff(sorted_nodes) > 0) | (np.diff(sorted_t) > SAME * np.abs(t).max())
+    new[1:] = (np.diff(poles[order]) > 0) | (np.diff(t[order]) > SAME * largest)
     level = np.empty(len(order), dtype=np.int64)
     level[order] = np.cumsum(new) - 1
-    node_of = sorted_nodes[new]
-    above = sorted_t[new][:, None] * director[node_of]
-    return Slab(elements, middle[node_of] + above, above, node_of, level.reshape(heights.shape))
+    holder = order[new]
+    return Slab(
+        joints.poles,
+        faces.reshape(-1, 3)[holder],
+        above.reshape(-1, 3)[holder],
+        holder,
+        level.reshape(heights.shape),
+    )
 
 
 def volume(body: Slab) -> float:

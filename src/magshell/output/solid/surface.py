@@ -1,9 +1,10 @@
 """The closed surface of a body, as small flat triangles whose corners are shared.
 
 Both faces of every element are cut into a regular lattice. Points on an edge are those of the edge, so that neighbours
-have the same. Where an edge has one element, a wall joins its two faces; where it has two of different thickness,
-risers join their faces. At its ends a wall or riser has all the levels that lie between its corners there, so that it
-fits whatever else meets on that director.
+have the same; where one is upside down, its lower face goes on in the upper one of the other. Where an edge has one
+element, a wall joins its two faces; where it has two of different thickness, risers join their faces. At its ends a
+wall or riser has all the levels that lie between its corners there, so that it fits whatever else meets on that
+director.
 
 Flat pieces cut curves short. So the thickness is changed by as much as makes the volume that of the body, by less than
 `CLOSE`: the points then are off the faces by less than the middles of the pieces are.
@@ -19,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
-from magshell.mesh.edges import find_edges
+from magshell.output.joints import sides_of
 from magshell.output.solid.slab import LOWER, UPPER, Slab, volume
 from magshell.output.tessellation import Lattice, Tessellation
 from magshell.shell import triangle
@@ -150,23 +151,25 @@ class Lattices:
 
     def _walls(self) -> tuple[IntArray, IntArray]:
         """Pairs of curves (n, pieces + 1) that walls and risers join, points by number; the outside is on the right."""
-        edges = find_edges(self.body.elements)
-        edge, low, high = [], [], []
-        for lattice, numbers, (corners, sides) in zip(self.lattices, self.numbers, self._sides, strict=True):
+        sides = sides_of(self.body.elements)
+        place_of = np.full(4 * len(self.body.elements), -1)
+        place_of[sides.numbers] = np.arange(len(sides.numbers))
+        where, low, high = [], [], []
+        for lattice, numbers, (corners, curves) in zip(self.lattices, self.numbers, self._sides, strict=True):
             places = (0, 1, 3) if len(corners) == 3 else (0, 1, 2, 3)
-            for place, along in zip(places, sides, strict=True):
-                edge.append(edges.edge_of_side[4 * lattice.elements + place])
+            for place, along in zip(places, curves, strict=True):
+                where.append(place_of[4 * lattice.elements + place])
                 low.append(numbers[LOWER][:, along])
                 high.append(numbers[UPPER][:, along])
-        edge_of, lower, upper = (np.concatenate(each) for each in (edge, low, high))
-        order = np.argsort(edge_of, kind="stable")
-        second = np.flatnonzero(np.diff(edge_of[order], prepend=-1) == 0)
-        one, other = order[second - 1], order[second]
-        alone = np.setdiff1d(order, np.concatenate([one, other]))
-        risen = np.any(upper[one] != upper[other][:, ::-1], axis=1)
-        sunk = np.any(lower[one] != lower[other][:, ::-1], axis=1)
-        below = [lower[alone], upper[other[risen]][:, ::-1], lower[one[sunk]]]
-        above = [upper[alone], upper[one[risen]], lower[other[sunk]][:, ::-1]]
+        order = np.argsort(np.concatenate(where))
+        lower, upper = (np.concatenate(each)[order] for each in (low, high))
+        alone, one = sides.partners < 0, np.flatnonzero(sides.partners > np.arange(len(sides.partners)))
+        other, against = sides.partners[one], sides.against[one, None]
+        beneath = np.where(against, upper[other], lower[other][:, ::-1])
+        over = np.where(against, lower[other], upper[other][:, ::-1])
+        risen, sunk = (np.any(mine != theirs, axis=1) for mine, theirs in ((upper[one], over), (lower[one], beneath)))
+        below = [lower[alone], over[risen], lower[one[sunk]]]
+        above = [upper[alone], upper[one[risen]], beneath[sunk]]
         return np.concatenate(below), np.concatenate(above)
 
 

@@ -122,6 +122,8 @@ class ProblemFile(Table):
         "loads[]": "kind",
         "magnets[]": "shape",
         "coils[]": "shape",
+        "field.stops": "",
+        "stages[].stops": "",
         "material": "law",
         "remanence[]": "kind",
         **{f"{place}thickness": "" for place in ("shell.", "shell.layers[].", "regions[].", "regions[].layers[].")},
@@ -160,11 +162,9 @@ class ProblemFile(Table):
 
     @model_validator(mode="after")
     def _field_is_of_something(self) -> ProblemFile:
-        field = self.field
-        if "field" not in self.model_fields_set or "flux_density" in field.model_fields_set or field.varies:
-            return self
-        if not (self.magnets or self.coils):
-            raise key_error("field.flux_density", "is missing")
+        fault = self.field.uniform_fault
+        if "field" in self.model_fields_set and fault and not (self.field.varies or self.magnets or self.coils):
+            raise key_error(f"field.{fault[0]}", fault[1])
         return self
 
     @model_validator(mode="after")

@@ -21,7 +21,7 @@ class FieldTable(Table):
     history: f.History | None = None
     rotation_axis: f.Direction | None = None
     rotation: f.Rotation | None = None
-    stops: tuple[f.PositiveFluxDensity, ...] = ()
+    stops: f.FieldStops = ()
     coupling: f.Coupling = "couple"
     gradient: GradientTable | None = None
     sampled: SampledTable | None = None
@@ -34,6 +34,11 @@ class FieldTable(Table):
         return any(part is not None for part in (self.gradient, self.sampled, self.coils))
 
     @property
+    def uniform_fault(self) -> tuple[str, str] | None:
+        """Key and fault of the uniform part; that it is missing matters where nothing else makes a field."""
+        return given_once("flux_density", self.flux_density, self.magnitude, self.direction)
+
+    @property
     def vector(self) -> tuple[float, float, float]:
         """The flux density at multiplier 1, T, however it is given."""
         if self.magnitude is None or self.direction is None:
@@ -43,11 +48,8 @@ class FieldTable(Table):
 
     @model_validator(mode="after")
     def _is_given_once(self) -> FieldTable:
-        if self.varies and not {"flux_density", "magnitude", "direction"} & self.model_fields_set:
-            return self
-        fault = given_once("flux_density", self.flux_density, self.magnitude, self.direction)
-        if fault is not None:
-            raise key_error(*fault)
+        if self.uniform_fault is not None and {"flux_density", "magnitude", "direction"} & self.model_fields_set:
+            raise key_error(*self.uniform_fault)
         return self
 
     @model_validator(mode="after")
@@ -61,10 +63,11 @@ class FieldTable(Table):
     @model_validator(mode="after")
     def _stops_lie_on_the_way(self) -> FieldTable:
         end = math.hypot(*self.vector) * max(map(abs, self.history or (1.0,)))
-        for number, stop in enumerate(self.stops):
+        stops = () if isinstance(self.stops, int) else self.stops
+        for number, stop in enumerate(stops):
             if stop > end * (1.0 + 1e-12):
                 raise key_error(f"stops[{number}]", f"{stop:g} T lies beyond the largest field of the path, {end:g} T")
-            if number and stop <= self.stops[number - 1]:
+            if number and stop <= stops[number - 1]:
                 raise key_error(f"stops[{number}]", "does not exceed the one before; stops must rise")
         return self
 

@@ -13,7 +13,7 @@ class StageTable(Table):
 
     name: f.Name | None = None
     control: Literal["load", "arc-length", "displacement"] = "load"
-    stops: tuple[f.PositiveNumber, ...] = ()
+    stops: f.StageStops = ()
     probe: f.ProbeName | None = None
     component: Literal[1, 2, 3] | None = None
     target: f.Length | None = None
