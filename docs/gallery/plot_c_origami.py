@@ -14,7 +14,8 @@ import magshell as ms
 
 # %%
 # The generator names panels and creases. The stiffness is a torque per angle and length. A clamp would hold the
-# rotations at the hinges as well, for both sides: :math:`u = 0` of the whole panel holds it and lets its neighbours turn.
+# rotations at the hinges as well, for both sides: :math:`u = 0` of the whole panel holds it and lets its
+# neighbours turn.
 
 mesh = ms.mesh.miura(sides=(10e-3, 10e-3), sector=60.0, fold=30.0, cells=(1, 1), elements=(3, 3))
 plastic = ms.MicropolarNeoHookean(shear_modulus=50e6 / 2.6, lame_lambda=15e6 / 0.52, length_scale=0.05e-3)

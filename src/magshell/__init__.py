@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from magshell.model.region import Layer, Region
     from magshell.model.rigid_body import RigidBody
     from magshell.model.shell import Shell
-    from magshell.model.springs import Spring
+    from magshell.model.springs import Spring, TorsionSpring
     from magshell.model.stages import Stage
     from magshell.model.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane
     from magshell.model.turn import Turn
@@ -87,7 +87,7 @@ _HOME = {
     "magshell.model.shell": ("Shell",),
     "magshell.solver": ("CriticalPoint", "Observer", "Path", "Settings", "SolveError", "Step", "resume", "solve"),
     "magshell.solver.buckling": ("Buckling", "BucklingMode", "buckling"),
-    "magshell.model.springs": ("Spring",),
+    "magshell.model.springs": ("Spring", "TorsionSpring"),
     "magshell.model.stages": ("Stage",),
     "magshell.model.hinge": ("Hinge",),
     "magshell.model.rigid_body": ("RigidBody",),
@@ -144,6 +144,7 @@ __all__ = [
     "Stage",
     "Step",
     "SymmetryPlane",
+    "TorsionSpring",
     "Traction",
     "Turn",
     "UniformField",
