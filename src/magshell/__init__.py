@@ -47,9 +47,10 @@ if TYPE_CHECKING:
     from magshell.model.region import Layer, Region
     from magshell.model.rigid_body import RigidBody
     from magshell.model.shell import Shell
-    from magshell.model.springs import Spring, TorsionSpring
+    from magshell.model.springs import Spring
     from magshell.model.stages import Stage
     from magshell.model.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane
+    from magshell.model.torsion_spring import TorsionSpring
     from magshell.model.turn import Turn
     from magshell.solver import CriticalPoint, Observer, Path, Settings, SolveError, Step, resume, solve
     from magshell.solver.buckling import Buckling, BucklingMode, buckling
@@ -87,7 +88,8 @@ _HOME = {
     "magshell.model.shell": ("Shell",),
     "magshell.solver": ("CriticalPoint", "Observer", "Path", "Settings", "SolveError", "Step", "resume", "solve"),
     "magshell.solver.buckling": ("Buckling", "BucklingMode", "buckling"),
-    "magshell.model.springs": ("Spring", "TorsionSpring"),
+    "magshell.model.springs": ("Spring",),
+    "magshell.model.torsion_spring": ("TorsionSpring",),
     "magshell.model.stages": ("Stage",),
     "magshell.model.hinge": ("Hinge",),
     "magshell.model.rigid_body": ("RigidBody",),

@@ -15,13 +15,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
+from magshell.model.elastic import Elastic
 from magshell.model.hinge import Hinge
 from magshell.model.loads.cross import cross_matrix
 from magshell.model.loads.dead import nodal
 from magshell.model.loads.load import Pairs
 from magshell.model.rows import OMEGA, Rows
 from magshell.model.shell import Shell
-from magshell.model.springs import Elastic
 from magshell.model.twist import twist, twist_slope
 from magshell.shell import rotation
 from magshell.shell.state import State

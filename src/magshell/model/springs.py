@@ -8,18 +8,14 @@ with the functions N_I that loads on the group have (`loads/distribution.py`): w
 spring pulls as a traction of that size does. Along a direction n, fixed in space, 1 is n ⊗ n. Springs are slack in the
 undeformed shell, and no load factor scales them.
 
-A torsion spring on a rigid body has ½ k ψ² of the angle ψ about its axis (`twist.py`).
-
 A new kind of spring is a class that inherits from `ElasticSupport`, and an entry of `SPRINGS`.
 """
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Literal, Protocol
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,107 +23,17 @@ from numpy.typing import ArrayLike
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.keys import Key
+from magshell.model.elastic import Anchored, ElasticSupport
 from magshell.model.loads.dead import nodal
 from magshell.model.loads.distribution import Products, centroid_weights, products
-from magshell.model.loads.load import Applied, Pairs
+from magshell.model.loads.load import Pairs
 from magshell.model.places import Places
 from magshell.model.shell import Shell
 from magshell.model.support import REACTION
-from magshell.model.twist import twist, twist_slope
+from magshell.model.torsion_spring import TorsionSpring
 from magshell.shell.state import State
-from magshell.units import ANGULAR_STIFFNESS, AREA_STIFFNESS, LINE_STIFFNESS, STIFFNESS, Dimension, show
+from magshell.units import AREA_STIFFNESS, LINE_STIFFNESS, STIFFNESS, Dimension, show
 from magshell.wording import counted, vector
-
-
-class Elastic(Applied, Protocol):
-    """Forces on a mesh that are minus the derivative of an energy."""
-
-    def energy(self, state: State) -> float:
-        """J."""
-
-
-class Anchored(Elastic, Protocol):
-    """Springs whose other end is fixed in space."""
-
-    @property
-    def weights(self) -> FloatArray:
-        """The mean of the places' positions with these (places,) is the centroid."""
-
-    @property
-    def about(self) -> FloatArray | None:
-        """What the moment of its reaction is about (3,), m; None: the centroid."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class ElasticSupport(ABC):
-    """Springs as a user writes them: a frozen dataclass that inherits from this class.
-
-    Attributes
-    ----------
-    kind : str
-        Its name in problem files.
-    keys : mapping of str to Key
-        Its parameters.
-    group : str
-        What it holds.
-    name : str or None
-        Of the reaction.
-    point : (3,) array_like or None
-        Point, fixed in space, that the reaction's moment is about, m.
-    """
-
-    kind: ClassVar[str]
-    keys: ClassVar[Mapping[str, Key]]
-
-    group: str
-    name: str | None = None
-    point: ArrayLike | None = None
-
-    @abstractmethod
-    def applied(self, shell: Shell, places: Places) -> Anchored:
-        """The springs on the nodal arrays of a shell.
-
-        Raises
-        ------
-        InputError
-            Unknown group, values that make no sense.
-        """
-
-    @abstractmethod
-    def words(self, shell: Shell) -> str:
-        """The springs in `magshell check`."""
-
-    @property
-    @abstractmethod
-    def legend(self) -> str:
-        """The springs in pictures."""
-
-    @property
-    @abstractmethod
-    def along(self) -> FloatArray | None:
-        """Direction (3,) in which they are drawn; None: none in particular."""
-
-    def _vector(self, name: str, value: ArrayLike) -> FloatArray:
-        try:
-            found = np.array(value, dtype=float)
-        except (TypeError, ValueError):
-            found = np.empty(0)
-        if found.shape != (3,) or not np.all(np.isfinite(found)):
-            raise InputError(f"{self.label}: {name} is {value!r}; it needs 3 finite numbers")
-        return found
-
-    @property
-    def label(self) -> str:
-        """Its name in messages."""
-        return f"springs on '{self.group}'"
-
-    @contextmanager
-    def located(self) -> Iterator[None]:
-        """Prefix every input error of the block with the springs."""
-        try:
-            yield
-        except InputError as error:
-            raise InputError(f"{self.label}: {error}") from None
 
 
 @dataclass(frozen=True, eq=False)
@@ -260,68 +166,6 @@ class Spring(ElasticSupport):
         return f"springs, {show(value, self.amounts[key])}"
 
 
-@dataclass(frozen=True, eq=False)
-class TorsionSpring(ElasticSupport):
-    """A torsion spring on a rigid body, about an axis that is fixed in space.
-
-    It resists the angle by which the body has turned about the axis, up to two turns.
-
-    Parameters
-    ----------
-    group : str
-        Name of the rigid body.
-    stiffness : float
-        N m/rad.
-    axis : array_like, shape (3,)
-        Its axis.
-    name, point
-        As of `Spring`.
-    """
-
-    kind: ClassVar[str] = "torsion"
-    keys: ClassVar[Mapping[str, Key]] = {
-        "group": Key("Name", "Name of the rigid body that the spring holds."),
-        "stiffness": Key("AngularStiffness", "Moment per angle of the body about the axis."),
-        "axis": Key("Direction", "Of the spring, fixed in space."),
-        "name": Key("Name", "Of the reaction in the results.", "the body"),
-        "point": Key("Position", REACTION["point"].meaning, "the body's reference point"),
-    }
-
-    group: str
-    stiffness: float
-    axis: ArrayLike
-
-    def applied(self, shell: Shell, places: Places) -> Anchored:
-        """The spring on the rigid body."""
-        with self.located():
-            places.named(self.group)
-            if not places.is_body(self.group):
-                raise InputError("it is no rigid body; a torsion spring acts on the rotation of one")
-            if not isinstance(self.stiffness, int | float | np.number) or not 0.0 < self.stiffness < np.inf:
-                raise InputError(f"stiffness is {self.stiffness!r}; it must be positive and finite")
-        weights = np.zeros(places.number)
-        weights[places.named(self.group)] = 1.0
-        about = None if self.point is None else self._vector("point", self.point)
-        return _Torsion(places.named(self.group), float(self.stiffness), self.along[None], weights, about)
-
-    @property
-    def along(self) -> FloatArray:
-        """The axis, of length 1."""
-        axis = self._vector("axis", self.axis)
-        if not np.any(axis):
-            raise InputError(f"{self.label}: axis is {self.axis!r}; it must not be zero")
-        return axis / np.linalg.norm(axis)
-
-    def words(self, shell: Shell) -> str:
-        """Stiffness and axis."""
-        return f"{show(self.stiffness, ANGULAR_STIFFNESS)} about {vector(np.ravel(self.axis))}"
-
-    @property
-    def legend(self) -> str:
-        """With the stiffness."""
-        return f"torsion spring, {show(self.stiffness, ANGULAR_STIFFNESS)}"
-
-
 SPRINGS: dict[str, type[ElasticSupport]] = {spring.kind: spring for spring in (Spring, TorsionSpring)}
 """The springs that problem files know, by their kind."""
 
@@ -357,64 +201,3 @@ class _Springs:
     def energy(self, state: State) -> float:
         """½ u · K u."""
         return -0.5 * float(np.vdot(self.forces(state)[:, :3], state.u))
-
-
-@dataclass(frozen=True, eq=False)
-class _Torsion:
-    """Springs on the spins of rows (n,) about axes (n, 3); stiffness in N m/rad. See `twist.py`."""
-
-    rows: IntArray
-    stiffness_of: float
-    axes: FloatArray
-    weights: FloatArray
-    about: FloatArray | None
-
-    @property
-    def conservative(self) -> bool:
-        return True
-
-    @property
-    def pairs(self) -> Sequence[Pairs]:
-        return (Pairs("omega", "omega", self.rows, self.rows),)
-
-    def forces(self, state: State) -> FloatArray:
-        """-k ψ g on the spins."""
-        ψ, g = twist(state.q[self.rows], self.axes)
-        couples = np.zeros_like(state.u)
-        couples[self.rows] = -self.stiffness_of * ψ[:, None] * g
-        return nodal("omega", couples)
-
-    def stiffness(self, state: State) -> list[FloatArray]:
-        """k (g ⊗ g + ψ dg/dΩ)."""
-        ψ, g = twist(state.q[self.rows], self.axes)
-        change = ψ[:, None, None] * twist_slope(state.q[self.rows], self.axes)
-        return [self.stiffness_of * (g[:, :, None] * g[:, None, :] + change)]
-
-    def energy(self, state: State) -> float:
-        """½ Σ k ψ²."""
-        return 0.5 * self.stiffness_of * float(np.sum(twist(state.q[self.rows], self.axes)[0] ** 2))
-
-
-def reaction_name(spring: ElasticSupport) -> str:
-    """The name of its reaction."""
-    return spring.group if spring.name is None else spring.name
-
-
-def check_names(springs: Sequence[ElasticSupport], taken: Sequence[str]) -> None:
-    """Refuse springs whose reactions have no name of their own.
-
-    Raises
-    ------
-    InputError
-        A name is no text, or another support or spring has it.
-    """
-    known = list(taken)
-    for spring in springs:
-        name = reaction_name(spring)
-        if not isinstance(name, str) or not name.strip():
-            raise InputError(f"{spring.label}: name is {name!r}; it must be a text")
-        if name in known:
-            raise InputError(
-                f"{spring.label}: the reaction '{name}' is that of another support; give these springs a name"
-            )
-        known.append(name)

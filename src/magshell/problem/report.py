@@ -16,7 +16,7 @@ from magshell.mesh.quality import worst
 from magshell.model import symmetry
 from magshell.model.doubts.figures import Figures, Whole, figures_of
 from magshell.model.doubts.loads import strength
-from magshell.model.springs import ElasticSupport
+from magshell.model.elastic import ElasticSupport
 from magshell.model.support import Support
 from magshell.model.supports import SymmetryPlane
 from magshell.model.words import offset_of, span

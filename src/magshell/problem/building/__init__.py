@@ -11,10 +11,11 @@ from magshell.evaluation.outputs import chosen
 from magshell.linalg import make_solver
 from magshell.magnetics import COUPLINGS
 from magshell.mesh import Mesh
+from magshell.model.elastic import ElasticSupport
 from magshell.model.loads import LOADS, Load
 from magshell.model.model import Model
 from magshell.model.shell import Shell
-from magshell.model.springs import SPRINGS, ElasticSupport
+from magshell.model.springs import SPRINGS
 from magshell.model.stages import Stage
 from magshell.model.support import Support
 from magshell.model.supports import SUPPORTS
