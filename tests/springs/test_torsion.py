@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from joints.bodies import FLAT, extruded
+from problem_files import JOINTED, changed
 
 import magshell as ms
-from magshell import solve
+from magshell import cli, problem, solve
 from magshell.evaluation.converged import converged
 from magshell.model.places import Places
 from magshell.model.rows import rows_of
@@ -87,3 +88,14 @@ def test_it_takes_the_moment_of_an_end():
 def test_refused(made, message):
     with pytest.raises(ms.InputError, match=message):
         ms.Model(SHELL, [ms.Clamp("near")], loads=[ms.Force("handle", (0, 0, 1e-4))], springs=[made])
+
+
+def test_in_a_problem_file(tmp_path, capsys):
+    file = tmp_path / "sprung.toml"
+    block = '[[springs]]\nkind = "torsion"\ngroup = "magnet"\nstiffness = "2 N mm/rad"\n'
+    block += 'axis = [0, 1, 0]\nname = "twist"\n\n'
+    file.write_text(changed(JOINTED, ("[[loads]]", block + "[[loads]]")))
+    assert cli.main(["check", str(file)]) == 0
+    assert "magnet 2 N mm/rad about (0, 1, 0), reaction 'twist'" in " ".join(capsys.readouterr().out.split())
+    *_, made = problem.load(file).model.springs
+    assert (made.stiffness, made.axis, made.name) == (2e-3, (0, 1, 0), "twist")
