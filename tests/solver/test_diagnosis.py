@@ -199,7 +199,7 @@ def test_a_region_is_named_with_its_own_modulus() -> None:
     assert f"coupling_modulus than {soft.coupling_modulus / 1e3:.4g} kPa of region 'outer', or a weaker field" in said
 
 
-@pytest.mark.parametrize(("hinges", "name"), [((), "joint"), ((Hinge("joint"),), "hinge")])
+@pytest.mark.parametrize(("hinges", "name"), [((), "joint"), ((Hinge("joint", 1.0),), "hinge")])
 def test_an_element_at_a_joint_is_told(hinges, name) -> None:
     """The directors of both sheets are turned alike at the joint: no angle is measured between sheets."""
     mesh, pull = extruded(FOLD, 1, 1), ms.Force("far", (0, 0, 1))
