@@ -219,11 +219,6 @@ def test_a_cut_beside_a_hinge():
     del groups["joint"]
     mesh = ms.mesh.cut(Mesh(mesh.points, mesh.elements, mesh.element_groups, groups), ["slit"])
     k, angle = 1e-7, 0.2
-    rigid = [ms.RigidBody("sheet0", name="one"), ms.RigidBody("sheet1", name="other")]
-    with pytest.raises(ms.errors.InputError, match="also belongs to"):
-        shell(mesh, rigid=rigid, hinges=[ms.Hinge("hinge", k)]) and ms.Model(
-            shell(mesh, rigid=rigid, hinges=[ms.Hinge("hinge", k)]), [ms.Clamp("one")]
-        )
     made = shell(mesh, rigid=[ms.RigidBody("far")], hinges=[ms.Hinge("hinge", k)])
     supports = [ms.Clamp("near"), ms.Prescribe("far", "omega", 1), ms.Prescribe("far", "omega", 3)]
     path = ms.solve(ms.Model(made, supports, loads=[ms.Moment("far", (0, 0.5 * k * angle, 0))]))
@@ -245,6 +240,27 @@ def test_a_mirror_plane_through_a_rigid_body():
         found.append(np.concatenate(row_of(path)[1:]))
         assert path.steps[-1].balance.moment_imbalance < 1e-8
     assert found[1] == pytest.approx(found[0], rel=1e-9, abs=1e-12)
+
+
+def test_a_mirror_plane_holds_a_body_by_its_name(caplog):
+    """Its nodes need not lie in the plane, and keep their normals."""
+    mesh = extruded(TEE, 1, 1)
+    supports = [ms.Clamp("near"), ms.SymmetryPlane("end", (1, 2, 3))]
+    loads = [ms.Force("joint", FORCE)]
+    held = ms.Model(shell(mesh, rigid=[ms.RigidBody("far", name="end")]), supports, loads=loads)
+    free = ms.Model(shell(mesh, rigid=[ms.RigidBody("far", name="end")]), supports[:1], loads=loads)
+    assert np.array_equal(held.rows.normals, free.rows.normals)
+    assert not caplog.records
+
+
+@pytest.mark.parametrize("stiffness", [0.0, 1e-5])
+@pytest.mark.parametrize("group", ["joint", "sheet1"])
+def test_a_hinge_that_a_body_keeps_from_turning_is_refused(group, stiffness):
+    made = shell(extruded(FLAT), rigid=[ms.RigidBody(group, name="bar")], hinges=[ms.Hinge("joint", stiffness)])
+    with pytest.raises(
+        ms.errors.InputError, match=r"hinge on 'joint': the edge between .* belongs to rigid body 'bar'"
+    ):
+        ms.Model(made, [ms.Clamp("near")], loads=[ms.Force("far", FORCE)])
 
 
 def test_upside_down_sheets_are_one_strip():
