@@ -301,7 +301,7 @@ def _of_part(discretisation: Discretisation, element: int, of: str = " of") -> s
 
 
 def _touched(discretisation: Discretisation, element: int) -> list[str]:
-    """Groups of the supports that an element has nodes of."""
-    mesh = discretisation.mesh
-    groups = [support.group for support in discretisation.model.supports]
-    return [group for group in groups if np.isin(mesh.elements[element], mesh.nodes_of(group)).any()]
+    """Groups and rigid bodies of the supports that an element has nodes of."""
+    model, nodes = discretisation.model, discretisation.mesh.elements[element]
+    groups = [support.group for support in model.supports]
+    return [group for group in groups if np.isin(nodes, model.shell.nodes_of(group)).any()]
