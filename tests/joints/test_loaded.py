@@ -25,6 +25,7 @@ LOADS = {
     "weight": [ms.Gravity((0.0003, 0.0006, -0.0015))],
 }
 SPRINGS = [ms.Spring("far", 1e-4, name="spring"), ms.Spring("joint", per_length=2e-4, direction=(1, 2, 3))]
+TORSION = [ms.TorsionSpring("far", 2e-4, axis=(1, 2, 3))]
 MOMENT = (3.0, -1.0, 2.0)
 BODIES = {
     "tee": {"lines": TEE},
@@ -35,6 +36,7 @@ BODIES = {
     "magnet at a joint": {"lines": TEE, "rigid": [RigidBody("joint", moment=MOMENT, mass=0.1)]},
     "sprung hinge": {"lines": FLAT, "hinges": [Hinge("joint", 3e-4)]},
     "sprung hinges of a tee": {"lines": TEE, "hinges": [Hinge("joint", 3e-4)]},
+    "body on a torsion spring": {"lines": FLAT, "rigid": [RigidBody("far", point=(2.5, 0.1, 0.7))], "springs": TORSION},
     "body on springs": {"lines": TEE, "rigid": [RigidBody("far", point=(0.7, 0.2, 1.3))], "springs": SPRINGS},
 }
 HELD = {

@@ -74,6 +74,10 @@ MADE_OF = {
     "bilayer-strip": (32, 200.0, {"shell": [(0.6, 100.0), (0.4, 300.0)]}, "tip"),
     "stepped-strip": (32, 200.0, {"shell": [(1.0, 300.0)], "outer": [(0.5, 300.0)]}, "step tip"),
     "starfish": (132, 1.5 * 3**0.5 * 6**2 + 6 * 16 * 4.5, {"shell": [(0.8, 296.0)], "centre": [(1.6, 2960.0)]}, "tip-1 tip-4"),
+    "tip-magnet": (11, 110.0, {"shell": [(0.5, 300.0)]}, "magnet-end"),
+    "rolled-strip": (48, 1200.0, {"shell": [(0.5, 300.0)]}, "middle handle"),
+    "origami": (36, 4 * 100 * np.sin(np.pi / 3), {"shell": [(0.5, 50e3)]}, "base"),
+    "ribbed-plate": (144, (40 + 2 * 6) * 120.0, {"shell": [(1.0, 1000.0)]}, "end rib"),
 }  # fmt: skip
 
 

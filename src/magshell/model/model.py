@@ -20,6 +20,7 @@ from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.model import coupling_limit, doubts, symmetry
 from magshell.model.constraints import Constraints, resolve
 from magshell.model.course import Amounts, Course, Loading
+from magshell.model.elastic import Anchored, ElasticSupport, check_names, reaction_name
 from magshell.model.hinge_springs import hinge_springs
 from magshell.model.linkage import check_linkage
 from magshell.model.loads import Applied, Load
@@ -30,7 +31,6 @@ from magshell.model.places import Places
 from magshell.model.rigid import check_supported
 from magshell.model.rows import Rows, rows_of
 from magshell.model.shell import Shell
-from magshell.model.springs import Anchored, Spring, check_names, reaction_name
 from magshell.model.stages import Stage
 from magshell.model.support import Support
 from magshell.model.supports import mirror_planes
@@ -66,7 +66,7 @@ class Model:
         resultants.
     outputs : sequence of str, optional
         Outputs of `magshell.evaluation.outputs` that files and pages hold beside those that they always do.
-    springs : sequence of Spring, optional
+    springs : sequence of Spring or TorsionSpring, optional
         Elastic supports.
 
     Attributes
@@ -99,7 +99,7 @@ class Model:
     stages: Sequence[Stage] = ()
     local_axis: ArrayLike = (1.0, 0.0, 0.0)
     outputs: Sequence[str] = ()
-    springs: Sequence[Spring] = ()
+    springs: Sequence[ElasticSupport] = ()
     rows: Rows = dataclasses.field(init=False, repr=False)
     constraints: Constraints = dataclasses.field(init=False, repr=False)
     applied: tuple[Applied, ...] = dataclasses.field(init=False, repr=False)
