@@ -82,6 +82,7 @@ class FakeConverged:
         return 5.0 * np.stack([self.state.u, -self.state.u], axis=2)
 
     reactions = ()
+    body_motions = body_forces = np.zeros((0, 2, 3))
     magnetic_torque = (0.0, 0.0, 1e-6)
     acting = "known"
 
@@ -119,6 +120,7 @@ class FakePath:
             outputs=("stress", "membrane_force"),
             named_supports=(),
             springs=(),
+            reactions=(),
             stages=[SimpleNamespace(branch=None)] * 3,
             probe_nodes={name: mesh.node_at(position) for name, position in probes.items()},
             course=lambda stage: SimpleNamespace(

@@ -33,7 +33,7 @@ from magshell.model.rows import Rows, rows_of
 from magshell.model.shell import Shell
 from magshell.model.stages import Stage
 from magshell.model.support import Support
-from magshell.model.supports import SymmetryPlane
+from magshell.model.supports import mirror_planes
 from magshell.model.turn import turned_bodies
 from magshell.multipliers import amplitudes
 from magshell.shell.state import State
@@ -126,8 +126,7 @@ class Model:
         put(self, "stages", tuple(self.stages) or (Stage(),) * self._longest_history())
         put(self, "local_axis", _direction("local_axis", self.local_axis))
         put(self, "outputs", tuple(self.outputs))
-        planes = [support for support in self.supports if isinstance(support, SymmetryPlane)]
-        put(self, "rows", rows_of(self.shell, planes))
+        put(self, "rows", rows_of(self.shell, mirror_planes(self.supports, self.shell.rigid)))
         places = Places(mesh, self.rows.carriers, tuple(self.shell.rigid))
         constraints = resolve(places, self.supports, len(self.stages))
         put(self, "constraints", self.rows.constraints(constraints))

@@ -140,7 +140,7 @@ def fill(
     full = size + rest
     v, T, radial = np.zeros(full), np.zeros((rest, 4, 3)), np.zeros(rest)
     wide = padded(max(size, nodal + layout.s))
-    scratch, vectors, forces = np.zeros((4, wide)), np.zeros((5, 3)), np.zeros((size, 2))
+    scratch, vectors, forces = np.zeros((4, wide)), np.zeros((5, 3)), np.zeros((size, 3))
     g, H = np.zeros((SIZE, 3)), np.zeros((SIZE, PADDED))
     GH, HG = np.zeros((size, PADDED)), np.zeros((SIZE, wide))
     r_sum, factor = np.zeros(size), np.zeros((3 * modes, 3 * modes + nodal + 1))
@@ -203,7 +203,7 @@ def fill(
         if any_tied(body.ties.kind[e]):
             tied = Tied(nodes, body.ties.kind[e], body.ties.host[e], body.normals[e])
             if tangent:
-                chain_matrix(body.ties, tied, state, layout, r, Kt)
+                chain_matrix(body.ties, tied, state, layout, forces, Kt)
                 chain_row(body.ties, tied, state, layout, out.r[1, e])
                 for a in range(3 * modes):
                     chain_row(body.ties, tied, state, layout, out.gain[e, a])

@@ -247,7 +247,10 @@ def section(
             moduli_on_legs(w, G, volume)
             _level_hessian(w)
             for i in range(3):
-                w.t3[i] = w.t_mixed[2, i] + volume * b[2] * forces[M + i]
+                force = volume * forces[M + i]
+                w.t3[i] = w.t_mixed[2, i] + b[2] * force
+                t1, t2 = w.t_mixed[0, i] + b[0] * force, w.t_mixed[1, i] + b[1] * force
+                _add_stress_vector(w, MIXED, i, z, s, t1, t2, w.t3[i])
                 for l in range(3):
                     w.H_ωω[i, l] += volume * w.work_tangent[OMEGA + i, OMEGA + l]
             _scatter_level(w, z, s, scale, volume)

@@ -26,6 +26,7 @@ from typing import NamedTuple
 from magshell.arrays import FloatArray, IntArray
 from magshell.compiled import inline
 from magshell.shell.element import Layout
+from magshell.shell.point import MIXED
 from magshell.shell.rotation import LAST, NEXT
 from magshell.shell.state import State
 
@@ -180,8 +181,9 @@ def _add_turning(K: FloatArray, layout: Layout, n: int, i: int, j: int, value: f
 
 
 @inline
-def _add_curvature(ties: Ties, tied: Tied, state: State, layout: Layout, r: FloatArray, K: FloatArray) -> None:
-    """The second derivatives, with the forces r on u' and w'."""
+def _add_curvature(ties: Ties, tied: Tied, state: State, layout: Layout, forces: FloatArray, K: FloatArray) -> None:
+    """The second derivatives, with the forces on u' and w' that the geometric part is made with."""
+    r = forces[:, MIXED]
     for n in range(layout.u):
         kind, node = tied.kind[n], tied.nodes[n]
         if n < layout.w and kind == STRETCHED:
@@ -219,12 +221,15 @@ def _add_curvature(ties: Ties, tied: Tied, state: State, layout: Layout, r: Floa
 
 
 @inline
-def chain_matrix(ties: Ties, tied: Tied, state: State, layout: Layout, r: FloatArray, K: FloatArray) -> None:
-    """From a matrix of u' and w' to one of u, w, ω and s; r are the forces on u' and w'. (Its transpose likewise.)"""
+def chain_matrix(ties: Ties, tied: Tied, state: State, layout: Layout, forces: FloatArray, K: FloatArray) -> None:
+    """From a matrix of u' and w' to one of u, w, ω and s. (Its transpose likewise.)
+
+    Its geometric part is made with the mixed column of the `forces` (values, 3) on u' and w'.
+    """
     _chain_rows(ties, tied, state, layout, K)
     for l in range(layout.nodal):
         chain_row(ties, tied, state, layout, K[l])
     for n in range(layout.s):
         if tied.kind[n] == STRETCHED or tied.kind[n] == TURNED:
             chain_row(ties, tied, state, layout, K[layout.nodal + n])
-    _add_curvature(ties, tied, state, layout, r, K)
+    _add_curvature(ties, tied, state, layout, forces, K)
