@@ -31,7 +31,6 @@ from magshell.shell.rotation import LAST, NEXT, rotation_matrix
 from magshell.shell.section import Request, predicted_stress, section
 from magshell.shell.state import State
 from magshell.shell.ties import (
-    Tied,
     Ties,
     any_tied,
     chain_matrix,
@@ -201,13 +200,12 @@ def fill(
             for l in range(nodal):
                 out.r[1, e, l] = r_sum[l]
         if any_tied(body.ties.kind[e]):
-            tied = Tied(nodes, body.ties.kind[e], body.ties.host[e], body.normals[e])
             if tangent:
-                chain_matrix(body.ties, tied, state, layout, forces, Kt)
-                chain_row(body.ties, tied, state, layout, out.r[1, e])
+                chain_matrix(body, e, state, layout, forces, Kt)
+                chain_row(body, e, state, layout, out.r[1, e])
                 for a in range(3 * modes):
-                    chain_row(body.ties, tied, state, layout, out.gain[e, a])
-            chain_row(body.ties, tied, state, layout, r)
+                    chain_row(body, e, state, layout, out.gain[e, a])
+            chain_row(body, e, state, layout, r)
         if tangent:
             for n in range(rest):
                 if transported[nodes[n]]:
