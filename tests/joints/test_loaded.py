@@ -25,7 +25,7 @@ LOADS = {
     "weight": [ms.Gravity((0.0003, 0.0006, -0.0015))],
 }
 SPRINGS = [ms.Spring("far", 1e-4, name="spring"), ms.Spring("joint", per_length=2e-4, direction=(1, 2, 3))]
-TORSION = [ms.TorsionSpring("far", 2e-4, axis=(1, 2, 3))]
+TORSION = [ms.TorsionSpring("far", 2e-4, axis=(1, 2, 3), name="spring")]
 MOMENT = (3.0, -1.0, 2.0)
 BODIES = {
     "tee": {"lines": TEE},
