@@ -11,6 +11,7 @@ import magshell as ms
 from joints.bodies import FLAT, TEE, extruded
 from magshell import solve
 from magshell.equations.instant import Increment, Instant
+from magshell.mesh import Mesh
 from magshell.model.hinge import Hinge
 from magshell.model.rigid_body import RigidBody
 from magshell.solver.settings import Settings
@@ -48,6 +49,9 @@ HELD = {
 
 def solved(lines, loads, supports=(), rigid=(), hinges=(), springs=()):
     mesh = extruded(lines)
+    taken = [body.name for body in rigid if body.name != body.group]
+    edges = {name: group for name, group in mesh.edge_groups.items() if name not in taken}
+    mesh = Mesh(mesh.points, mesh.elements, mesh.element_groups, edges)
     magnets = ms.remanence.per_element(np.tile((0.5, 0.1, 0.2), (len(mesh.elements), 1)))
     rubber = ms.MicropolarNeoHookean(1.0, 1.7, length_scale=0.03)
     shell = ms.Shell(mesh, 0.1, rubber, magnets, density=1.0, rigid=rigid, hinges=hinges)

@@ -257,9 +257,7 @@ def test_a_mirror_plane_holds_a_body_by_its_name(caplog):
 @pytest.mark.parametrize("group", ["joint", "sheet1"])
 def test_a_hinge_that_a_body_keeps_from_turning_is_refused(group, stiffness):
     made = shell(extruded(FLAT), rigid=[ms.RigidBody(group, name="bar")], hinges=[ms.Hinge("joint", stiffness)])
-    with pytest.raises(
-        ms.errors.InputError, match=r"hinge on 'joint': the edge between .* belongs to rigid body 'bar'"
-    ):
+    with pytest.raises(ms.errors.InputError, match=r"hinge on 'joint': .* belongs to rigid body 'bar'"):
         ms.Model(made, [ms.Clamp("near")], loads=[ms.Force("far", FORCE)])
 
 

@@ -153,7 +153,6 @@ def rows_of(shell: Shell, planes: Sequence[SymmetryPlane] = ()) -> Rows:
     mesh, nodes, bodies = shell.mesh, len(shell.mesh.points), shell.rigid
     places, sheets = nodes + len(bodies), sheets_of(mesh, shell.hinges)
     owner = members_of(mesh, bodies)
-    _check_hinges(shell, owner)
     elements, table = _numbered(shell, sheets, places)
     of, piece, sheet = (np.array(one) for one in (table.of, table.piece, table.sheet))
     several = np.zeros(len(of), dtype=bool)
