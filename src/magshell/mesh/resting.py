@@ -43,6 +43,7 @@ def check_resting(points: FloatArray, elements: IntArray, edges: Edges, size: fl
     np.minimum.at(of_node, elements, shortest[:, None])
     tolerance = ON_FACE * np.minimum(shortest[element], of_node[node])
     bad = np.flatnonzero(_distances(points[node], x[element]) <= tolerance)
+    bad = bad[[not _adjoin(elements, element[one], node[one]) for one in bad]]
     if bad.size:
         one, at = element[bad[0]], node[bad[0]]
         owner = int(np.argmax((elements == at).any(axis=1)))
@@ -51,6 +52,12 @@ def check_resting(points: FloatArray, elements: IntArray, edges: Edges, size: fl
             f"{place(points[at])}, without being a node of it. Divide the first so that it has nodes and edges there, "
             "as at a T-joint, or leave a gap." + further(bad.size)
         )
+
+
+def _adjoin(elements: IntArray, element: int, node: int) -> bool:
+    """Whether an element has a node in common with one of those about a node; sharp corners of an outline do so."""
+    about = elements[(elements == node).any(axis=1)]
+    return bool(np.isin(elements[element], about).any())
 
 
 def _distances(points: FloatArray, x: FloatArray) -> FloatArray:
