@@ -144,9 +144,9 @@ def fill(
     GH, HG = np.zeros((size, PADDED)), np.zeros((SIZE, wide))
     r_sum, factor = np.zeros(size), np.zeros((3 * modes, 3 * modes + nodal + 1))
     records = workspace()
-    w = records[0]
     across = level_scratch(body.by_level, body.levels.shape[2])
     for e in range(first, min(first + len(out.K), len(body.elements))):
+        w = records[0]  # here, for Numba frees what is not used any more: the record alone does not keep its memory
         nodes, Kt, r = body.elements[e], out.K[e - first], out.r[0, e]
         gather(nodes, state, state.alpha[e], layout, v)
         if any_tied(body.ties.kind[e]):
@@ -242,8 +242,8 @@ def predict_stresses(
     full = layout.nodal + rest + 3 * modes
     v, dv, spins = np.zeros(full), np.zeros(full), np.zeros(layout.nodal)
     T, records, across = np.zeros((rest, 4, 3)), workspace(), level_scratch(body.by_level, body.levels.shape[2])
-    w = records[0]
     for e in range(len(body.elements)):
+        w = records[0]
         nodes = body.elements[e]
         gather(nodes, state, state.alpha[e], layout, v)
         _gather_increment(nodes, increment, layout, spins)
@@ -278,8 +278,9 @@ def level_stretches(body: Body, state: State, flux_density: FloatArray, zeta: Fl
     """
     layout = body.layout
     v, records = np.zeros(layout.nodal + layout.q + 3 * layout.modes), workspace()
-    w, across = records[0], np.zeros((4, body.levels.shape[2]))
+    across = np.zeros((4, body.levels.shape[2]))
     for e in range(len(body.elements)):
+        w = records[0]
         gather(body.elements[e], state, state.alpha[e], layout, v)
         if any_tied(body.ties.kind[e]):
             stretch_directors(body.elements[e], body.normals[e], state, layout, v)
