@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from magshell.model.springs import Spring
     from magshell.model.stages import Stage
     from magshell.model.supports import Clamp, Prescribe, SimpleSupport, SymmetryPlane
+    from magshell.model.torsion_spring import TorsionSpring
     from magshell.model.turn import Turn
     from magshell.solver import CriticalPoint, Observer, Path, Settings, SolveError, Step, resume, solve
     from magshell.solver.buckling import Buckling, BucklingMode, buckling
@@ -88,6 +89,7 @@ _HOME = {
     "magshell.solver": ("CriticalPoint", "Observer", "Path", "Settings", "SolveError", "Step", "resume", "solve"),
     "magshell.solver.buckling": ("Buckling", "BucklingMode", "buckling"),
     "magshell.model.springs": ("Spring",),
+    "magshell.model.torsion_spring": ("TorsionSpring",),
     "magshell.model.stages": ("Stage",),
     "magshell.model.hinge": ("Hinge",),
     "magshell.model.rigid_body": ("RigidBody",),
@@ -144,6 +146,7 @@ __all__ = [
     "Stage",
     "Step",
     "SymmetryPlane",
+    "TorsionSpring",
     "Traction",
     "Turn",
     "UniformField",

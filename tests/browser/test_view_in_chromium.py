@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from chromium import Browser, browser, missing
+from joints.bodies import FOLD, extruded
 from PIL import Image
 from rolled import FIELD, mixed, plate, rolled
 from selenium.webdriver.common.action_chains import ActionChains
@@ -353,12 +354,19 @@ def regions() -> Path:
     return solve(replace(whole, shell=shell))
 
 
-@pytest.mark.parametrize("kind", ["quadrilaterals", "triangles too", "regions"])
+def folded() -> Path:
+    """Two sheets at a right angle, the second pulled at its end."""
+    mesh = extruded(FOLD, 1, 1, width=10e-3, size=10e-3)
+    shell = ms.Shell(mesh, 1e-3, ms.MicropolarNeoHookean(1e5, 1.7e5, length_scale=3e-5))
+    return solve(ms.Model(shell, [ms.Clamp("near")], loads=[ms.Force("far", (4e-4, 2e-4, -2e-3))]))
+
+
+@pytest.mark.parametrize("kind", ["quadrilaterals", "triangles too", "regions", "folded"])
 def test_solid_of_a_step_is_closed(shared, path, tmp_path, kind):
     """As exact as the page's numbers of 16 bits; its volume is that of the body that the command exports."""
     trimesh = pytest.importorskip("trimesh")
     if kind != "quadrilaterals":
-        path = regions() if kind == "regions" else rolled(mixed(), 3)
+        path = {"regions": regions, "folded": folded, "triangles too": lambda: rolled(mixed(), 3)}[kind]()
     shared.open(write_page(path, tmp_path / "view.html"))
     for number in (0, len(path.steps) // 2):  # at the last, the ends of the roll touch
         content = solid_of(shared, number)

@@ -7,11 +7,13 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from battery import COUPLING, FIELD, MATERIAL, REMANENCE, Unsupported, example
 
+import magshell as ms
 from magshell.equations.discretisation import Discretisation
 from magshell.magnetics import remanence
 from magshell.magnetics.fields.uniform import UniformField
-from magshell.mesh import Mesh
+from magshell.mesh import Mesh, split
 from magshell.model.hinge import Hinge
+from magshell.model.region import Layer, Region
 from magshell.model.rigid_body import RigidBody
 from magshell.model.shell import Shell
 from magshell.shell.elements import QUADRATIC
@@ -21,6 +23,12 @@ FLAT = [((0, 0), (1, 0)), ((1, 0), (2, 0))]
 UPSIDE_DOWN = [((0, 0), (1, 0)), ((2, 0), (1, 0))]
 TEE = [((0, 0), (1, 0)), ((1, 0), (2, 0)), ((1, 0), (1, 1))]
 BOX = [((0, 0), (1, 0)), ((1, 0), (1, 1)), ((1, 1), (0, 1)), ((0, 1), (0, 0))]
+
+
+SECTIONS = [
+    Region("sheet1", thickness=0.2, offset="top"),
+    Region("sheet2", layers=[Layer(0.05, example(MATERIAL)), Layer(0.1, example(MATERIAL))]),
+]
 
 
 def extruded(lines: Sequence[tuple], per_line: int = 2, across: int = 2, width: float = 1.0, size: float = 1.0) -> Mesh:
@@ -64,7 +72,7 @@ def extruded(lines: Sequence[tuple], per_line: int = 2, across: int = 2, width: 
     return Mesh(np.array(points), np.array(elements), element_groups=groups, edge_groups=edge_groups)
 
 
-def jointed(mesh: Mesh, element=QUADRATIC, coupling=None, hinges=(), rigid=(), **given):
+def jointed(mesh: Mesh, element=QUADRATIC, coupling=None, hinges=(), rigid=(), regions=(), **given):
     """A body that nothing holds, without symmetry of material or remanence; `given` are fields of `Unsupported`."""
     shell = Shell(
         mesh,
@@ -74,6 +82,7 @@ def jointed(mesh: Mesh, element=QUADRATIC, coupling=None, hinges=(), rigid=(), *
         element=element,
         hinges=hinges,
         rigid=rigid,
+        regions=regions,
     )
     body = Unsupported(shell, UniformField(FIELD), coupling or example(COUPLING), **given)
     return Discretisation(body, lambda graph: np.arange(graph.shape[0]))
@@ -88,6 +97,34 @@ BODIES: dict[str, Callable] = {
     "hinged tee": lambda *given: jointed(extruded(TEE), *given, hinges=[Hinge("joint")]),
     "rigid end": lambda *given: jointed(extruded(FLAT), *given, rigid=[RigidBody("far", point=(2.5, 0.1, 0.7))]),
     "rigid sheet": lambda *given: jointed(extruded(TEE), *given, rigid=[RigidBody("sheet2")]),
+    "sections at a joint": lambda *given: jointed(extruded(TEE), *given, regions=SECTIONS),
+    "triangles": lambda *given: jointed(split(extruded(TEE, 1, 1), "crossed"), QUADRATIC.with_triangles, *given[1:]),
     "rigid joint": lambda *given: jointed(extruded(TEE), *given, rigid=[RigidBody("joint", point=(0.2, 0.1, 0.3))]),
 }
 """Functions of an element type and a coupling."""
+
+
+def folded_arm() -> ms.Model:
+    """A model of everything: sprung hinges of a tee, a kink, differing sections, a rigid magnet, springs."""
+    lines = [((0, 0), (1, 0)), ((1, 0), (2, 0)), ((1, 0), (1, 1)), ((2, 0), (2.5, 0.6))]
+    mesh = extruded(lines, 1, 1, size=1e-2, width=1e-2)
+    joint = mesh.edge_groups["joint"]
+    hinge = joint[np.isclose(mesh.points[joint[:, 0], 0], 1e-2)]
+    mesh = Mesh(mesh.points, mesh.elements, mesh.element_groups, {**mesh.edge_groups, "hinge": hinge})
+    rubber = ms.MicropolarNeoHookean(1e5, 3e5, length_scale=1e-5)
+    shell = Shell(
+        mesh,
+        1e-3,
+        rubber,
+        remanence.constant((0.01, 0, 0)),
+        regions=[Region("sheet2", thickness=5e-4)],
+        hinges=[Hinge("hinge", 1e-2)],
+        rigid=[RigidBody("far", name="magnet", moment=(1e-3, 0, 1e-3), mass=1e-3)],
+    )
+    return ms.Model(
+        shell,
+        [ms.Clamp("near"), ms.Prescribe("magnet", "omega", 2, 0.3)],
+        UniformField((0, 0, 5e-3)),
+        loads=[ms.Force("magnet", (1e-4, 0, 2e-4), follower=True)],
+        springs=[ms.Spring("sheet2", 1.0)],
+    )

@@ -11,6 +11,7 @@ import magshell as ms
 from joints.bodies import FLAT, TEE, extruded
 from magshell import solve
 from magshell.equations.instant import Increment, Instant
+from magshell.mesh import Mesh
 from magshell.model.hinge import Hinge
 from magshell.model.rigid_body import RigidBody
 from magshell.solver.settings import Settings
@@ -25,6 +26,7 @@ LOADS = {
     "weight": [ms.Gravity((0.0003, 0.0006, -0.0015))],
 }
 SPRINGS = [ms.Spring("far", 1e-4, name="spring"), ms.Spring("joint", per_length=2e-4, direction=(1, 2, 3))]
+TORSION = [ms.TorsionSpring("far", 2e-4, axis=(1, 2, 3), name="spring")]
 MOMENT = (3.0, -1.0, 2.0)
 BODIES = {
     "tee": {"lines": TEE},
@@ -35,6 +37,7 @@ BODIES = {
     "magnet at a joint": {"lines": TEE, "rigid": [RigidBody("joint", moment=MOMENT, mass=0.1)]},
     "sprung hinge": {"lines": FLAT, "hinges": [Hinge("joint", 3e-4)]},
     "sprung hinges of a tee": {"lines": TEE, "hinges": [Hinge("joint", 3e-4)]},
+    "body on a torsion spring": {"lines": FLAT, "rigid": [RigidBody("far", point=(2.5, 0.1, 0.7))], "springs": TORSION},
     "body on springs": {"lines": TEE, "rigid": [RigidBody("far", point=(0.7, 0.2, 1.3))], "springs": SPRINGS},
 }
 HELD = {
@@ -46,6 +49,9 @@ HELD = {
 
 def solved(lines, loads, supports=(), rigid=(), hinges=(), springs=()):
     mesh = extruded(lines)
+    taken = [body.name for body in rigid if body.name != body.group]
+    edges = {name: group for name, group in mesh.edge_groups.items() if name not in taken}
+    mesh = Mesh(mesh.points, mesh.elements, mesh.element_groups, edges)
     magnets = ms.remanence.per_element(np.tile((0.5, 0.1, 0.2), (len(mesh.elements), 1)))
     rubber = ms.MicropolarNeoHookean(1.0, 1.7, length_scale=0.03)
     shell = ms.Shell(mesh, 0.1, rubber, magnets, density=1.0, rigid=rigid, hinges=hinges)

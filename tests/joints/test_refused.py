@@ -180,3 +180,10 @@ def test_what_turns_about_a_free_hinge(given, turns):
 def test_rotations_that_do_not_turn_the_section(supports, rigid, doubted):
     said = model(supports=[ms.Clamp("near"), *supports], rigid=rigid).doubts()
     assert any("support on 'far': omega is that of the micro-rotation alone" in one for one in said) == doubted
+
+
+@pytest.mark.parametrize(("support", "doubted"), [(ms.Clamp("sheet0"), True), (ms.SimpleSupport("sheet0"), False)])
+def test_clamps_that_hold_a_hinge(support, doubted):
+    """A panel that is held by u alone lets its neighbours turn."""
+    said = model(supports=[support], hinges=[ms.Hinge("joint", 1e-3)]).doubts()
+    assert any("the clamp holds both sides of the hinge 'joint'" in one for one in said) == doubted

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import pyvista
 
+import magshell as ms
 from magshell.output.critical import CriticalWriter
 from magshell.solver.critical import BIFURCATION, LIMIT_POINT, CriticalPoint
 
@@ -65,3 +66,18 @@ def test_disk_error_names_the_file(path, points, tmp_path):
     writer.started(path.discretisation, None)
     with pytest.raises(OSError, match="critical"):
         writer.critical(points[0])
+
+
+def test_modes_of_shells_with_rigid_bodies(tmp_path):
+    """Nodes have their part of a mode; the rows of bodies are in no file of nodes."""
+    mesh = ms.mesh.rectangle(0.02, 0.01, (2, 1))
+    rubber = ms.MicropolarNeoHookean(1e6, 1e6)
+    shell = ms.Shell(mesh, 1e-3, rubber, rigid=[ms.RigidBody("right")])
+    path = ms.solve(ms.Model(shell, [ms.Clamp("left")], loads=[ms.Force("right", (0, 0, 1e-4))]))
+    step = path.steps[-1]
+    mode = np.random.default_rng(3).normal(size=(len(step.state.u), 11))
+    writer = CriticalWriter(tmp_path)
+    writer.started(path.discretisation, None)
+    writer.critical(CriticalPoint(1, BIFURCATION, 0, 0.7, step.flux_density, 1.25, step.state, mode, (0, 1)))
+    written = pyvista.read(tmp_path / "critical" / "point-01.vtu").point_data["mode"]
+    assert np.allclose(written[: len(mesh.points)], mode[: len(mesh.points), :3])

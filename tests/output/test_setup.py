@@ -14,7 +14,9 @@ from magshell.errors import InputError
 from magshell.output.marks import (
     MOST_ARROWS,
     Solids,
+    body_marks,
     field_marks,
+    hinge_marks,
     load_marks,
     probe_marks,
     remanence_marks,
@@ -198,3 +200,23 @@ def test_picture(tmp_path, can_draw):
     assert min(counts.values()) > 800, counts
     border = np.concatenate([picture[0], picture[-1], picture[:, 0], picture[:, -1]])
     assert (border == 255).all()
+
+
+def test_rigid_bodies_magnets_and_hinges():
+    """Balls on the nodes of a body, an arrow of its moment at its reference point, bars along the edges of a hinge."""
+    points = {"left": (0, 0), "fold": (LENGTH / 2, 0), "right": (LENGTH, 0)}
+    walls = {"one": ("left", "fold"), "two": ("fold", "right")}
+    mesh = ms.mesh.profile(points, walls, WIDTH, elements=(2, 3), axis=(0, 1, 0), first=(1, 0, 0))
+    rigid, hinges = [ms.RigidBody("right", "magnet", moment=(0, 0, 2e-3))], [ms.Hinge("fold", 1e-3)]
+    shell = ms.Shell(mesh, 1e-3, RUBBER, rigid=rigid, hinges=hinges)
+    model = ms.Model(shell, [ms.Turn("left", (0, 1, 0), 0.1)], ms.UniformField((5e-3, 0, 0)))
+    body, magnet = body_marks(model, LENGTH, AXES)
+    assert (body.name, magnet.name) == ("magnet: rigid body", "magnet: magnetic moment, 2 mA m^2")
+    nodes = mesh.points[mesh.nodes_of("right")]
+    assert np.linalg.norm(body.places[:, None] - nodes[None], axis=2).min(axis=1).max() < body.width
+    assert np.cross(magnet.vectors[0], X3) == pytest.approx([0, 0, 0], abs=1e-15)
+    assert np.linalg.norm(magnet.places[0] - nodes.mean(axis=0)) < 0.05 * LENGTH
+    (hinge,) = hinge_marks(model, LENGTH, AXES)
+    assert hinge.name == "fold: hinge, 1 mN/rad"
+    assert np.linalg.norm(hinge.vectors, axis=1).sum() == pytest.approx(WIDTH)
+    assert np.abs(hinge.places[:, 0] - LENGTH / 2).max() < 0.01 * LENGTH

@@ -77,6 +77,10 @@ MADE_OF = {
     "plate-over-magnet": (100, 100.0, {"shell": [(0.5, 1e6)]}, "corner"),
     "strip-over-magnet": (20, 40.0, {"shell": [(0.5, 300.0)]}, "tip"),
     "magnet-approaches": (52, 25.0 + 4 * 13.5 * 4.0, {"shell": [(0.6, 300.0)]}, "tip"),
+    "tip-magnet": (11, 110.0, {"shell": [(0.5, 300.0)]}, "magnet-end"),
+    "rolled-strip": (48, 1200.0, {"shell": [(0.5, 300.0)]}, "middle handle"),
+    "origami": (36, 4 * 100 * np.sin(np.pi / 3), {"shell": [(0.5, 50e3)]}, "base"),
+    "ribbed-plate": (144, (40 + 2 * 6) * 120.0, {"shell": [(1.0, 1000.0)]}, "end rib"),
 }  # fmt: skip
 
 

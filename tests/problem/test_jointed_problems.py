@@ -86,3 +86,10 @@ def test_bad_files(tmp_path: Path, capsys: pytest.CaptureFixture[str], old: str,
     file.write_text(changed(text, (old, new)))
     assert main(["check", str(file)]) == 2
     assert message in capsys.readouterr().err
+
+
+def test_a_magnitude_of_the_moment(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """It keeps the direction that the file says, as that of a field does."""
+    (tmp_path / "jointed.toml").write_text(JOINTED)
+    assert main(["check", str(tmp_path / "jointed.toml"), "--set", "rigid[0].moment=2 mA m^2"]) == 0
+    assert "magnetic moment (2 mA m^2, 0, 0)" in capsys.readouterr().out

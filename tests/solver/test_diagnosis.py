@@ -6,11 +6,13 @@ import math
 
 import numpy as np
 import pytest
+from joints.bodies import FOLD, extruded
 
 import magshell as ms
 from magshell import SolveError, solve
 from magshell.equations.discretisation import Discretisation
 from magshell.linalg import nested_dissection
+from magshell.model.hinge import Hinge
 from magshell.shell.state import State
 from magshell.solver.diagnosis import diagnosis, measure
 from solver.models import LENGTH, THICKNESS, rubber, strip
@@ -195,3 +197,18 @@ def test_a_region_is_named_with_its_own_modulus() -> None:
     said = diagnosis(discretisation, state, loading, None)
     assert ", in region 'outer'" in said, said
     assert f"coupling_modulus than {soft.coupling_modulus / 1e3:.4g} kPa of region 'outer', or a weaker field" in said
+
+
+@pytest.mark.parametrize(("hinges", "name"), [((), "joint"), ((Hinge("joint", 1.0),), "hinge")])
+def test_an_element_at_a_joint_is_told(hinges, name) -> None:
+    """The directors of both sheets are turned alike at the joint: no angle is measured between sheets."""
+    mesh, pull = extruded(FOLD, 1, 1), ms.Force("far", (0, 0, 1))
+    discretisation = discretised(
+        ms.Model(ms.Shell(mesh, 0.1, rubber(), hinges=hinges), [ms.Clamp("near")], loads=[pull])
+    )
+    state, loading = discretisation.undeformed(), discretisation.model.loading(0.0)
+    assert measure(discretisation, state, loading).turn.angle == pytest.approx(0.0, abs=1e-6)
+    bent = state.u.copy()
+    bent[mesh.elements[1, [4, 6]], 0] -= 0.2
+    said = diagnosis(discretisation, state._replace(u=bent), loading, None)
+    assert f"element 1 (at (1e+03, 500, 500) mm, at a {name}) turns by 77°" in said

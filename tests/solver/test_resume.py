@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
+from joints.bodies import folded_arm
 
 import magshell as ms
 from magshell import Model, Observer, Settings, Stage
@@ -33,6 +34,7 @@ CASES = {
     "arc-length": (lambda: built_in("magnetic-arch", (4, 1)), Settings()),
     "stages": (lambda: heavy_strip(gravity=(1, 1), history=(0, 1)), Settings()),
     "branches": (lambda: buckling([Stage(), along(1), along(-1)]), Settings()),
+    "joints, hinges, a magnet on springs": (folded_arm, Settings()),
     "parts of several layers": (lambda: in_parts(arm()), Settings()),
 }
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 from battery import COUPLING, PATCHES, Unsupported, each_element, example, for_element
@@ -100,8 +102,9 @@ def test_a_linear_displacement_of_elements():
 SUPPORTS = (ms.SymmetryPlane("left", (1.0, 2.0, -0.5)),)
 
 
-def body(**given):
-    made = Unsupported(shell_of(CURVED), ms.UniformField((0, 0, 0)), example(COUPLING), **given)
+def body(rigid=(), **given):
+    shell = dataclasses.replace(shell_of(CURVED), rigid=rigid)
+    made = Unsupported(shell, ms.UniformField((0, 0, 0)), example(COUPLING), **given)
     return Discretisation(made, lambda graph: np.arange(graph.shape[0]))
 
 
@@ -133,4 +136,4 @@ def test_assembled(rigid):
 
 
 def test_every_kind_is_here():
-    assert {spring.kind for spring in SPRING.values()} == set(SPRINGS)
+    assert {spring.kind for spring in SPRING.values()} | {"torsion"} == set(SPRINGS)  # test_torsion.py

@@ -21,6 +21,7 @@ from magshell.problem.fields import (
     AccelerationVector,
     FluxVector,
     ForceVector,
+    MagneticMoment,
     MomentVector,
     NodalValue,
     RemanenceVector,
@@ -156,6 +157,7 @@ def test_a_magnitude_of_a_load() -> None:
 
 def test_every_vector_with_a_unit_takes_a_magnitude() -> None:
     kinds = {FluxVector, RemanenceVector, ForceVector, MomentVector, StressVector, AccelerationVector, NodalValue}
+    kinds |= {MagneticMoment}
     tables = [getattr(schema, name) for name in schema.__all__]
     for described in (schema.load_tables, schema.remanence_tables, schema.support_tables):
         tables += described().values()

@@ -56,7 +56,7 @@ class FieldAtLevels:
 
     def _uniform(self, flux_density: FloatArray) -> LocalField:
         shape = self._reference.body.levels.shape
-        return LocalField(np.array(np.broadcast_to(flux_density, (1, *shape[1:], 3))), None)
+        return LocalField(np.array(np.broadcast_to(flux_density, (1, *shape[1:], 3)), order="C"), None)
 
     def _check_outside(self, drives: FloatArray, points: FloatArray) -> None:
         """Refuse a shell that penetrates a magnet."""
@@ -83,4 +83,4 @@ def shaped(values: Values, shape: tuple[int, ...]) -> LocalField:
     slopes[:, :9] = values.gradient.reshape(count, 9)
     if values.second is not None:
         slopes[:, 9:] = values.second.reshape(count, 27)
-    return LocalField(np.array(values.flux_density).reshape(*shape, 3), slopes.reshape(*shape, GRADIENTS))
+    return LocalField(np.array(values.flux_density, order="C").reshape(*shape, 3), slopes.reshape(*shape, GRADIENTS))

@@ -98,7 +98,7 @@ class ShellTerm:
         filled, tangent = self._filled, insertion is not None
         filled.scale[:], filled.enhancement_residual[:] = 0.0, 0.0
         mixed = instant.prediction is not None
-        request = Request(field, mixed, tangent)
+        request = Request(self.body.laws, field, mixed, tangent)
         stresses = self._unstressed if instant.prediction is None else instant.prediction
         for first in range(0, len(self.body.elements), len(filled.K)):
             element, determinant = loops.fill(

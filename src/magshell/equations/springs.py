@@ -11,7 +11,7 @@ from magshell.equations.instant import Instant
 from magshell.equations.loads import LoadTerm
 from magshell.model.constraints import Constraints
 from magshell.model.course import Loading
-from magshell.model.springs import Elastic
+from magshell.model.elastic import Elastic
 from magshell.shell.state import State
 from magshell.shell.unknowns import COMPONENTS
 

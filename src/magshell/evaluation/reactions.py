@@ -20,7 +20,7 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.equations.discretisation import Discretisation
-from magshell.model.springs import reaction_name
+from magshell.model.elastic import reaction_name
 from magshell.shell.rotation import cross
 from magshell.shell.state import State
 from magshell.shell.unknowns import COLUMNS

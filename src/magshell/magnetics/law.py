@@ -19,7 +19,7 @@ the rows and columns X is not used. A law without a potential returns 0.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, Protocol, TypeVar
+from typing import Any, NamedTuple, Protocol, TypeVar
 
 import numba
 import numpy as np
@@ -99,18 +99,25 @@ def _called(law: CouplingLaw, cls: Any) -> Callable[..., float]:
     return called
 
 
+class _Seen(NamedTuple):
+    """What a law sees at some points: m, n and B (p, 3), gradients (p, 36)."""
+
+    m: FloatArray
+    n: FloatArray
+    B: FloatArray
+    gradients: FloatArray
+
+
 @Kernel
 def _at_points(
     address: int,
     parameters: FloatArray,
-    m: FloatArray,
-    n: FloatArray,
-    B: FloatArray,
-    gradients: FloatArray,
+    seen: _Seen,
     energy: FloatArray,
     forces: FloatArray,
     tangent: FloatArray,
 ) -> None:
+    m, n, B, gradients = seen.m, seen.n, seen.B, seen.gradients
     for p in range(len(m)):
         energy[p] = call(address, parameters, m[p], n[p], B[p], gradients[p], forces[p], tangent[p])
 
@@ -140,9 +147,10 @@ def evaluate(
     forces[:, WORK] = np.nan
     m, n = (np.ascontiguousarray(one, dtype=float).reshape(-1, 3) for one in (m, n))
     slopes = np.zeros((*places, GRADIENTS)) if gradients is None else np.asarray(gradients, dtype=float)
-    B, slopes = np.array(np.broadcast_to(B, (*places, 3))).reshape(-1, 3), slopes.reshape(-1, GRADIENTS)
+    B = np.array(np.broadcast_to(B, (*places, 3)), dtype=float, order="C").reshape(-1, 3)
+    seen = _Seen(m, n, B, np.ascontiguousarray(slopes.reshape(-1, GRADIENTS)))
     address, parameters = callbacks[type(coupling)].address, np.array(coupling, dtype=float)
-    _at_points(address, parameters, m, n, B.astype(float), np.ascontiguousarray(slopes), energy, forces, tangent)
+    _at_points(address, parameters, seen, energy, forces, tangent)
     energy, forces = energy + forces[:, WORK], forces[:, :WORK] + forces[:, WORK:]
     return energy.reshape(places), forces.reshape(*places, WORK), tangent.reshape(*places, WORK, WORK)
 

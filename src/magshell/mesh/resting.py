@@ -9,11 +9,12 @@ import numpy as np
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.errors import MeshError
 from magshell.mesh.edges import SIDES, Edges
-from magshell.mesh.geometry import COINCIDENT, centres, chord_lengths
+from magshell.mesh.geometry import COINCIDENT, centres, chord_lengths, diagonal_normals, unit
 from magshell.mesh.wording import further, place
 
 ON_FACE = 1e-3
 """A node closer to an element than this fraction of the shortest side of both lies on it."""
+IN_PLANE = np.cos(np.radians(5.0))
 STEPS = 12
 CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 
@@ -43,6 +44,7 @@ def check_resting(points: FloatArray, elements: IntArray, edges: Edges, size: fl
     np.minimum.at(of_node, elements, shortest[:, None])
     tolerance = ON_FACE * np.minimum(shortest[element], of_node[node])
     bad = np.flatnonzero(_distances(points[node], x[element]) <= tolerance)
+    bad = bad[[not _along(points, elements, element[one], node[one]) for one in bad]]
     if bad.size:
         one, at = element[bad[0]], node[bad[0]]
         owner = int(np.argmax((elements == at).any(axis=1)))
@@ -51,6 +53,14 @@ def check_resting(points: FloatArray, elements: IntArray, edges: Edges, size: fl
             f"{place(points[at])}, without being a node of it. Divide the first so that it has nodes and edges there, "
             "as at a T-joint, or leave a gap." + further(bad.size)
         )
+
+
+def _along(points: FloatArray, elements: IntArray, element: int, node: int) -> bool:
+    """Whether a free edge runs alongside an element, in its plane or from a node of it, as lips of narrow slits do."""
+    about = np.flatnonzero((elements == node).any(axis=1))
+    normals = unit(diagonal_normals(points[elements[np.append(about, element)]]))
+    flat = np.abs(normals[:-1] @ normals[-1]) > IN_PLANE
+    return bool(flat.all() or np.isin(elements[element], elements[about]).any())
 
 
 def _distances(points: FloatArray, x: FloatArray) -> FloatArray:

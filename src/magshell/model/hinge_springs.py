@@ -1,15 +1,8 @@
 r"""Torsion springs of hinges: they act on the rotation of one side of a hinge against the other, about the edge.
 
 The rotations of the sides are q_a and q_b; side b is turned against side a by p = q_a* q_b = (p_0, p). With the unit
-tangent T of the undeformed edge the angle about the edge is
-
-    ψ = 2 atan2(t, p_0),      t = p · T,
-
-continuous up to two turns, and the spring has the energy ½ k ψ² per length of the edge. Spins turn p by
-δp = ½ Ω p with Ω = R_aᵀ(δω_b - δω_a), so that
-
-    δψ = g · Ω,      g = (p_0² T + p_0 p × T + t p) / (p_0² + t²),
-
+tangent T of the undeformed edge the angle about the edge is ψ (`twist.py`), continuous up to two turns, and the spring
+has the energy ½ k ψ² per length of the edge. Spins turn p by δp = ½ Ω p with Ω = R_aᵀ(δω_b - δω_a), so that δψ = g · Ω,
 and the couples are -k ψ R_a g on b and the opposite on a. They are summed over the nodes of each straight edge by
 Simpson's rule, or the trapezoidal rule where only corners have rotations.
 """
@@ -22,15 +15,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
+from magshell.model.elastic import Elastic
 from magshell.model.hinge import Hinge
 from magshell.model.loads.cross import cross_matrix
 from magshell.model.loads.dead import nodal
 from magshell.model.loads.load import Pairs
 from magshell.model.rows import OMEGA, Rows
 from magshell.model.shell import Shell
-from magshell.model.springs import Elastic
+from magshell.model.twist import twist, twist_slope
 from magshell.shell import rotation
-from magshell.shell.rotation import cross
 from magshell.shell.state import State
 
 
@@ -82,10 +75,8 @@ class _HingeSprings:
     def _angles(self, state: State) -> tuple[FloatArray, FloatArray, FloatArray]:
         """ψ (n,), g (n, 3) and R_a (n, 3, 3)."""
         p = rotation.product(rotation.conjugate(state.q[self.a]), state.q[self.b])
-        p_0, vector = p[:, :1], p[:, 1:]
-        t = np.sum(vector * self.tangents, axis=1, keepdims=True)
-        g = (p_0**2 * self.tangents + p_0 * cross(vector, self.tangents) + t * vector) / (p_0**2 + t**2)
-        return 2.0 * np.arctan2(t, p_0)[:, 0], g, rotation.matrix(state.q[self.a])
+        ψ, g = twist(p, self.tangents)
+        return ψ, g, rotation.matrix(state.q[self.a])
 
     def forces(self, state: State) -> FloatArray:
         """Couples on the spins."""
@@ -108,25 +99,8 @@ class _HingeSprings:
     def _slope(self, state: State) -> FloatArray:
         """dg/dΩ (n, 3, 3)."""
         p = rotation.product(rotation.conjugate(state.q[self.a]), state.q[self.b])
-        p_0, vector, T = p[:, :1, None], p[:, 1:], self.tangents
-        t = np.sum(vector * T, axis=1)[:, None, None]
-        d_p0 = -0.5 * _row(vector)
-        d_vector = 0.5 * (p_0 * np.eye(3) - cross_matrix(vector))
-        d_t = 0.5 * (p_0 * _row(T) + _row(cross(vector, T)))
-        N = p_0**2 * _column(T) + p_0 * _column(cross(vector, T)) + t * _column(vector)
-        D = p_0**2 + t**2
-        d_N = (2.0 * p_0 * _column(T) + _column(cross(vector, T))) * d_p0 - p_0 * cross_matrix(T) @ d_vector
-        d_N = d_N + _column(vector) * d_t + t * d_vector
-        return np.asarray((d_N - N / D * (2.0 * p_0 * d_p0 + 2.0 * t * d_t)) / D)
+        return twist_slope(p, self.tangents)
 
     def energy(self, state: State) -> float:
         """½ Σ k ψ²."""
         return 0.5 * float(np.sum(self.stiffness_of * self._angles(state)[0] ** 2))
-
-
-def _column(vectors: FloatArray) -> FloatArray:
-    return vectors[:, :, None]
-
-
-def _row(vectors: FloatArray) -> FloatArray:
-    return vectors[:, None, :]

@@ -11,10 +11,10 @@ from scipy.sparse.csgraph import connected_components
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.model.constraints import FRAME_OF_FIELD, Constraints
+from magshell.model.elastic import Elastic
 from magshell.model.loads.cross import cross_matrix
 from magshell.model.rows import OMEGA, Rows, U
 from magshell.model.shell import Shell
-from magshell.model.springs import Elastic
 from magshell.shell.state import State
 from magshell.shell.unknowns import COLUMNS
 

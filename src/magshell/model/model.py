@@ -20,6 +20,7 @@ from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.model import coupling_limit, doubts, symmetry
 from magshell.model.constraints import Constraints, resolve
 from magshell.model.course import Amounts, Course, Loading
+from magshell.model.elastic import Anchored, ElasticSupport, check_names, reaction_name
 from magshell.model.hinge_springs import hinge_springs
 from magshell.model.linkage import check_linkage
 from magshell.model.loads import Applied, Load
@@ -31,10 +32,9 @@ from magshell.model.places import Places
 from magshell.model.rigid import check_supported
 from magshell.model.rows import Rows, rows_of
 from magshell.model.shell import Shell
-from magshell.model.springs import Anchored, Spring, check_names, reaction_name
 from magshell.model.stages import Stage
 from magshell.model.support import Support
-from magshell.model.supports import SymmetryPlane
+from magshell.model.supports import mirror_planes
 from magshell.model.turn import turned_bodies
 from magshell.multipliers import amplitudes
 from magshell.shell.state import State
@@ -67,7 +67,7 @@ class Model:
         resultants.
     outputs : sequence of str, optional
         Outputs of `magshell.evaluation.outputs` that files and pages hold beside those that they always do.
-    springs : sequence of Spring, optional
+    springs : sequence of Spring or TorsionSpring, optional
         Elastic supports.
 
     Attributes
@@ -100,7 +100,7 @@ class Model:
     stages: Sequence[Stage] = ()
     local_axis: ArrayLike = (1.0, 0.0, 0.0)
     outputs: Sequence[str] = ()
-    springs: Sequence[Spring] = ()
+    springs: Sequence[ElasticSupport] = ()
     rows: Rows = dataclasses.field(init=False, repr=False)
     constraints: Constraints = dataclasses.field(init=False, repr=False)
     applied: tuple[Applied, ...] = dataclasses.field(init=False, repr=False)
@@ -122,8 +122,7 @@ class Model:
         put(self, "stages", tuple(self.stages) or (Stage(),) * self._longest_history())
         put(self, "local_axis", _direction("local_axis", self.local_axis))
         put(self, "outputs", tuple(self.outputs))
-        planes = [support for support in self.supports if isinstance(support, SymmetryPlane)]
-        put(self, "rows", rows_of(self.shell, planes))
+        put(self, "rows", rows_of(self.shell, mirror_planes(self.supports, self.shell.rigid)))
         places = Places(mesh, self.rows.carriers, tuple(self.shell.rigid))
         constraints = resolve(places, self.supports, len(self.stages))
         put(self, "constraints", self.rows.constraints(constraints))

@@ -9,8 +9,8 @@ import numpy as np
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.model.constraints import Constraints
+from magshell.model.elastic import Elastic
 from magshell.model.places import Places
-from magshell.model.springs import Elastic
 from magshell.shell.state import State
 
 

@@ -8,15 +8,14 @@ with the functions N_I that loads on the group have (`loads/distribution.py`): w
 spring pulls as a traction of that size does. Along a direction n, fixed in space, 1 is n ⊗ n. Springs are slack in the
 undeformed shell, and no load factor scales them.
 
-A new kind of spring is a class with these attributes whose `applied` gives an `Anchored`, and an entry of `SPRINGS`.
+A new kind of spring is a class that inherits from `ElasticSupport`, and an entry of `SPRINGS`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Literal, Protocol
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,38 +23,21 @@ from numpy.typing import ArrayLike
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.keys import Key
+from magshell.model.elastic import Anchored, ElasticSupport
 from magshell.model.loads.dead import nodal
 from magshell.model.loads.distribution import Products, centroid_weights, products
-from magshell.model.loads.load import Applied, Pairs
+from magshell.model.loads.load import Pairs
 from magshell.model.places import Places
 from magshell.model.shell import Shell
 from magshell.model.support import REACTION
+from magshell.model.torsion_spring import TorsionSpring
 from magshell.shell.state import State
 from magshell.units import AREA_STIFFNESS, LINE_STIFFNESS, STIFFNESS, Dimension, show
 from magshell.wording import counted, vector
 
 
-class Elastic(Applied, Protocol):
-    """Forces on a mesh that are minus the derivative of an energy."""
-
-    def energy(self, state: State) -> float:
-        """J."""
-
-
-class Anchored(Elastic, Protocol):
-    """Springs whose other end is fixed in space."""
-
-    @property
-    def weights(self) -> FloatArray:
-        """The mean of the places' positions with these (places,) is the centroid."""
-
-    @property
-    def about(self) -> FloatArray | None:
-        """What the moment of its reaction is about (3,), m; None: the centroid."""
-
-
 @dataclass(frozen=True, eq=False)
-class Spring:
+class Spring(ElasticSupport):
     """Springs on the displacement of a group, in all directions or along one.
 
     Give one of the three stiffnesses.
@@ -100,8 +82,6 @@ class Spring:
     per_length: float | None = None
     per_area: float | None = None
     direction: ArrayLike | None = None
-    name: str | None = None
-    point: ArrayLike | None = None
 
     def applied(self, shell: Shell, places: Places) -> Anchored:
         """The springs on the nodal arrays of a shell.
@@ -167,28 +147,6 @@ class Spring:
         unit = unit / np.linalg.norm(unit)
         return np.outer(unit, unit)
 
-    def _vector(self, name: str, value: ArrayLike) -> FloatArray:
-        try:
-            found = np.array(value, dtype=float)
-        except (TypeError, ValueError):
-            found = np.empty(0)
-        if found.shape != (3,) or not np.all(np.isfinite(found)):
-            raise InputError(f"{self.label}: {name} is {value!r}; it needs 3 finite numbers")
-        return found
-
-    @property
-    def label(self) -> str:
-        """Its name in messages."""
-        return f"springs on '{self.group}'"
-
-    @contextmanager
-    def located(self) -> Iterator[None]:
-        """Prefix every input error of the block with the springs."""
-        try:
-            yield
-        except InputError as error:
-            raise InputError(f"{self.label}: {error}") from None
-
     def words(self, shell: Shell) -> str:
         """The springs in `magshell check`."""
         key, value = self._amount()
@@ -197,13 +155,18 @@ class Spring:
         return f"{show(value, self.amounts[key])}{in_all}{along}, {counted(len(shell.nodes_of(self.group)), 'node')}"
 
     @property
+    def along(self) -> FloatArray | None:
+        """Their direction."""
+        return None if self.direction is None else self._vector("direction", self.direction)
+
+    @property
     def legend(self) -> str:
         """The springs in pictures."""
         key, value = self._amount()
         return f"springs, {show(value, self.amounts[key])}"
 
 
-SPRINGS: dict[str, type[Spring]] = {spring.kind: spring for spring in (Spring,)}
+SPRINGS: dict[str, type[ElasticSupport]] = {spring.kind: spring for spring in (Spring, TorsionSpring)}
 """The springs that problem files know, by their kind."""
 
 
@@ -238,28 +201,3 @@ class _Springs:
     def energy(self, state: State) -> float:
         """½ u · K u."""
         return -0.5 * float(np.vdot(self.forces(state)[:, :3], state.u))
-
-
-def reaction_name(spring: Spring) -> str:
-    """The name of its reaction."""
-    return spring.group if spring.name is None else spring.name
-
-
-def check_names(springs: Sequence[Spring], taken: Sequence[str]) -> None:
-    """Refuse springs whose reactions have no name of their own.
-
-    Raises
-    ------
-    InputError
-        A name is no text, or another support or spring has it.
-    """
-    known = list(taken)
-    for spring in springs:
-        name = reaction_name(spring)
-        if not isinstance(name, str) or not name.strip():
-            raise InputError(f"{spring.label}: name is {name!r}; it must be a text")
-        if name in known:
-            raise InputError(
-                f"{spring.label}: the reaction '{name}' is that of another support; give these springs a name"
-            )
-        known.append(name)

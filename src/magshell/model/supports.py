@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from magshell.arrays import FloatArray
 from magshell.errors import InputError, suggest
 from magshell.keys import HISTORY, Key
+from magshell.model.rigid_body import RigidBody
 from magshell.model.support import AXES, GROUP, Condition, Support, frame_about, numbers
 from magshell.model.turn import Turn
 from magshell.shell.unknowns import COLUMNS
@@ -178,6 +179,12 @@ class Prescribe(Support):
             raise InputError(f"{where}: value has shape {value.shape}; it takes 3 numbers, or one for all components")
         for axis, component in zip(AXES, np.broadcast_to(value, 3), strict=True):
             yield Condition(self.group, self.field, axis, float(component), False, self.history)
+
+
+def mirror_planes(supports: Sequence[Support], bodies: Sequence[RigidBody]) -> list[SymmetryPlane]:
+    """The mirror planes that groups of the mesh lie in: not those that hold a rigid body by its name."""
+    names = {body.name for body in bodies}
+    return [one for one in supports if isinstance(one, SymmetryPlane) and one.group not in names]
 
 
 SUPPORTS: dict[str, type[Support]] = {

@@ -18,7 +18,7 @@ from magshell.model.reflection import angle_to_plane, in_plane, is_normal
 from magshell.model.shell import Shell
 from magshell.model.stages import Stage
 from magshell.model.support import Support
-from magshell.model.supports import SymmetryPlane
+from magshell.model.supports import mirror_planes
 from magshell.shell.normals import nodal_normals
 from magshell.units import FLUX_DENSITY, Dimension, show
 
@@ -58,8 +58,7 @@ def planes(model: Mirrored) -> list[Plane]:
     """The mirror planes of a model."""
     return [
         Plane(support.group, support.unit_normal, model.shell.nodes_of(support.group))
-        for support in model.supports
-        if isinstance(support, SymmetryPlane)
+        for support in mirror_planes(model.supports, model.shell.rigid)
     ]
 
 

@@ -69,5 +69,5 @@ def write_mode(file: pathlib.Path, discretisation: Discretisation, point: Critic
     """A state with its mode as a VTU file."""
     content = grid(discretisation, point)
     for array, field in (("mode", "u"), ("mode_director", "w"), ("mode_rotation", "omega")):
-        content.point_data.set_array(np.ascontiguousarray(point.mode[:, COLUMNS[field]]), array)
+        content.point_data.set_array(np.ascontiguousarray(point.mode[: content.n_points, COLUMNS[field]]), array)
     write_atomically(file, vtu(content))

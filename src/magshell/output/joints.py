@@ -8,7 +8,8 @@ and the heights a_i of the faces it is the least-squares solution of n_i · p = 
 
 One rotation carries all sheets at a joint, so W is that of the undeformed normals. Where three or more elements meet at
 an edge, where a fold is so sharp that the mitre would reach too far, where sections change at the kink, and at hinges
-each sheet ends by itself: the bodies of the sheets then overlap at the joint.
+each sheet ends by itself: the bodies of the sheets then overlap at the joint. (Three elements of one sheet on an edge,
+as of a fin at less than 30°, end by themselves each.)
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from magshell.mesh.junctions import junctions_of
 from magshell.model.hinge import Hinge
 from magshell.model.rows import Rows, rows_of
 from magshell.model.shell import Shell
+from magshell.output.tessellation import own_nodes
 
 LONGEST = 2.0
 """Distance of a mitred face from the node, in heights: folds of up to 120° are mitred."""
@@ -167,15 +169,22 @@ class Sides(NamedTuple):
 def sides_of(poles: IntArray) -> Sides:
     """All sides of elements with these poles (elements, 8), each with its neighbour."""
     ends = poles[:, SIDES].reshape(-1, 3)
-    numbers = np.flatnonzero(ends[:, 0] != ends[:, 1])
+    numbers, edge, count = _edges_of(poles)
     ends = ends[numbers]
-    keys = np.column_stack([np.sort(ends[:, :2], axis=1), ends[:, 2]])
-    _, edge, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
-    order = np.argsort(edge.ravel(), kind="stable")
-    pairs = order[count[edge.ravel()[order]] == 2].reshape(-1, 2)
+    order = np.argsort(edge, kind="stable")
+    pairs = order[count[edge[order]] == 2].reshape(-1, 2)
     partners = np.full(len(numbers), -1)
     partners[pairs[:, 0]], partners[pairs[:, 1]] = pairs[:, 1], pairs[:, 0]
     return Sides(numbers, partners, (partners >= 0) & (ends[:, 0] == ends[partners, 0]))
+
+
+def _edges_of(poles: IntArray) -> tuple[IntArray, IntArray, IntArray]:
+    """Numbers of the sides that are some, the edge of each, and the number of sides on each edge."""
+    ends = poles[:, SIDES].reshape(-1, 3)
+    numbers = np.flatnonzero(ends[:, 0] != ends[:, 1])
+    keys = np.column_stack([np.sort(ends[numbers, :2], axis=1), ends[numbers, 2]])
+    _, edge, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
+    return numbers, edge.ravel(), count
 
 
 def outline_of(mesh: Mesh, hinges: Sequence[Hinge] = ()) -> IntArray:
@@ -211,6 +220,10 @@ def _found(shell: Shell) -> Joints:
         if made is not None:
             poles.ravel()[group], mitred.ravel()[group], upside.ravel()[group] = pieces.ravel()[group[0]], True, turned
             terms.append(made)
+    numbers, edge, count = _edges_of(poles)
+    owner, side = np.divmod(numbers[count[edge] > 2], 4)
+    crowded = owner[:, None], SIDES[side]
+    poles[crowded] = poles.max() + 1 + own_nodes(shell.mesh.elements)[crowded]
     empty = np.empty(0, dtype=np.int64)
     terms.append(Terms(empty, empty, empty, empty > 0, np.empty(0)))
     whole = [np.concatenate(each) for each in zip(*terms, strict=True)]

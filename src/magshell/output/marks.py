@@ -253,7 +253,7 @@ def spring_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:
     for number, spring in enumerate(model.springs, start=len(model.supports)):
         nodes = model.shell.nodes_of(spring.group)
         nodes = nodes[spread_out(mesh.points[nodes], MOST_OF_A_LOAD)]
-        along = axes[1] if spring.direction is None else unit(np.array(spring.direction, dtype=float)[None])[0]
+        along = axes[1] if spring.along is None else unit(spring.along[None])[0]
         vectors = np.tile(0.09 * size * along, (len(nodes), 1))
         name, colour = f"{spring.group}: {spring.legend}", SUPPORTS[number % len(SUPPORTS)]
         marks.append(Mark(name, colour, Solids.COILS, mesh.points[nodes] - 0.56 * vectors, vectors))

@@ -39,12 +39,12 @@ from magshell.output.scene import (
     viewing_axes,
 )
 from magshell.output.shape import triad
-from magshell.output.skin import MOST_ELEMENTS_WITH_EDGES, Hull, own_nodes
+from magshell.output.skin import MOST_ELEMENTS_WITH_EDGES, Hull
 from magshell.output.sources import COPPER, NORTH, SOUTH, Piece, pieces
 from magshell.output.sources import extent as sources_extent
 from magshell.output.sources import place as place_sources
 from magshell.output.style import DPI, GREY, INK, PALE, TEXT, deliver
-from magshell.output.tessellation import Tessellation
+from magshell.output.tessellation import Tessellation, own_nodes
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -275,7 +275,7 @@ def _place_body(plotter: Any, shell: Shell, shown: FloatArray, camera: Camera, s
     import pyvista
 
     mesh = shell.mesh
-    own = own_nodes(mesh)
+    own = own_nodes(mesh.elements)
     cells = Tessellation(own)
     positions = shown.reshape(-1, 3)
     surface = cells.surface(positions)

@@ -16,11 +16,9 @@ from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.evaluation.converged import Converged
 from magshell.mesh.edges import SIDES
 from magshell.output.joints import Mitres, joints_of, sides_of
-from magshell.output.tessellation import Surface, Tessellation, element_edges
-from magshell.shell.triangle import REPEATED
+from magshell.output.tessellation import Surface, Tessellation, element_edges, own_nodes
 
 if TYPE_CHECKING:
-    from magshell.mesh import Mesh
     from magshell.model.shell import Shell
 
 MOST_ELEMENTS_WITH_EDGES = 4000
@@ -158,7 +156,7 @@ class Hull:
         open_edges: IntArray | None = None,
     ) -> None:
         mesh, heights, joints = shell.mesh, shell.faces_at_nodes, joints_of(shell)
-        self._mesh, self._heights, self._nodes, self._joints = mesh, heights, own_nodes(mesh), joints
+        self._mesh, self._heights, self._nodes, self._joints = mesh, heights, own_nodes(mesh.elements), joints
         self._cells = Tessellation(self._nodes, pieces)
         sides = sides_of(joints.poles)
         element, side = np.divmod(sides.numbers, 4)
@@ -285,10 +283,3 @@ class Hull:
             for triples in (self._inner, self._lines)
         )
         return Placed(surface, inner, outer)
-
-
-def own_nodes(mesh: Mesh) -> IntArray:
-    """Node numbers (elements, 8) in which no two elements share a node."""
-    own = np.arange(8 * len(mesh.elements)).reshape(-1, 8)
-    own[np.ix_(mesh.triangles, REPEATED)] = own[mesh.triangles, 2:3]
-    return own

@@ -149,3 +149,11 @@ def element_edges(elements: IntArray) -> IntArray:
     triples = elements[:, SIDES[:, [0, 2, 1]]].reshape(-1, 3)
     triples = triples[triples[:, 0] != triples[:, 1]]
     return triples[np.unique(triples[:, 2], return_index=True)[1]]
+
+
+def own_nodes(elements: IntArray) -> IntArray:
+    """Node numbers (elements, 8) in which no two elements share a node: 8 e + n for node n of element e."""
+    own = np.arange(elements.size).reshape(-1, 8)
+    triangles = is_triangle(elements)
+    own[np.ix_(triangles, triangle.REPEATED)] = own[triangles, 2:3]
+    return own

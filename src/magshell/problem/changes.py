@@ -102,7 +102,7 @@ def vectors() -> set[str]:
 
     tables = [one.keys for registry in (REMANENCES, LOADS, SUPPORTS) for one in registry.values()]
     kinds = [(key, about.kind) for keys in tables for key, about in keys.items()]
-    return {"flux_density", *(key for key, kind in kinds if kind.endswith("Vector") or kind == "NodalValue")}
+    return {"flux_density", "moment", *(key for key, kind in kinds if kind.endswith("Vector") or kind == "NodalValue")}
 
 
 def _place(data: dict[str, Any], key: str) -> tuple[Any, Any]:

@@ -17,7 +17,7 @@ from magshell.mesh.quality import worst
 from magshell.model import symmetry
 from magshell.model.doubts.figures import Figures, Whole, figures_of
 from magshell.model.doubts.loads import strength
-from magshell.model.springs import Spring
+from magshell.model.elastic import ElasticSupport
 from magshell.model.support import Support
 from magshell.model.supports import SymmetryPlane
 from magshell.model.words import offset_of, span
@@ -224,7 +224,7 @@ def _springs(problem: Problem, figures: Whole) -> Iterator[tuple[str, str]]:
         yield spring.group, f"{spring.words(problem.model.shell)}{_reaction(spring, figures.extent)}"
 
 
-def _reaction(support: Support | Spring, extent: float) -> str:
+def _reaction(support: Support | ElasticSupport, extent: float) -> str:
     """Name and point of a support's reaction, where they are given."""
     text = "" if support.name is None else f", reaction '{support.name}'"
     if support.point is None:

@@ -32,6 +32,7 @@ from magshell.arrays import FloatArray
 from magshell.compiled import inline
 from magshell.shell.element import Layout
 from magshell.shell.elements import ElementType
+from magshell.shell.point import INTERNAL, MIXED
 from magshell.shell.shape_functions import serendipity
 from magshell.shell.triangle import collapsed
 
@@ -89,7 +90,7 @@ def hold_vector(
     r: FloatArray,
     K: FloatArray,
 ) -> float:
-    """Add the gradient of W to r[:, 0] and its Hessian to K, for the element's values v.
+    """Add the gradient of W to the internal and mixed columns of r and its Hessian to K, for the element's values v.
 
     `vectors` (5, 3) is scratch. Returns W.
     """
@@ -111,11 +112,12 @@ def hold_vector(
     for i in range(3):
         row, at = last + i * layout.modes, i * layout.u
         energy += 0.5 * held.s[number, e] * alpha[i] ** 2
-        r[row, 0] += T[0] * a[0, i] + T[1] * a[1, i] + held.s[number, e] * alpha[i]
+        r[row, INTERNAL] += T[0] * a[0, i] + T[1] * a[1, i] + held.s[number, e] * alpha[i]
         K[row, row] += held.s[number, e]
         for n in range(layout.u):
             d = T[0] * held.du[0, n] + T[1] * held.du[1, n]
-            r[at + n, 0] += d * alpha[i]
+            r[at + n, INTERNAL] += d * alpha[i]
+            r[at + n, MIXED] += d * alpha[i]
             K[row, at + n] += d
             K[at + n, row] += d
         for j in range(3):

@@ -31,7 +31,6 @@ from magshell.shell.rotation import LAST, NEXT, rotation_matrix
 from magshell.shell.section import Mixed, Request, predicted_stress, section
 from magshell.shell.state import State
 from magshell.shell.ties import (
-    Tied,
     Ties,
     any_tied,
     chain_matrix,
@@ -141,16 +140,16 @@ def fill(
     full = size + rest
     v, T, radial = np.zeros(full), np.zeros((rest, 4, 3)), np.zeros(rest)
     wide = padded(max(size, nodal + layout.s))
-    scratch, vectors, forces = np.zeros((4, wide)), np.zeros((5, 3)), np.zeros((size, 2))
+    scratch, vectors, forces = np.zeros((4, wide)), np.zeros((5, 3)), np.zeros((size, 3))
     g, H = np.zeros((SIZE, 3)), np.zeros((SIZE, PADDED))
     GH, HG = np.zeros((size, PADDED)), np.zeros((SIZE, wide))
     r_sum, factor = np.zeros(size), np.zeros((3 * modes, 3 * modes + nodal + 1))
     records = workspace()
-    w = records[0]
     across = level_scratch(body.by_level, body.levels.shape[2])
     position = np.zeros((3, max(size, SIZE), 3))
     slopes = slopes_scratch(request.field.slopes, body.levels.shape[2])
     for e in range(first, min(first + len(out.K), len(body.elements))):
+        w = records[0]  # here, for Numba frees what is not used any more: the record alone does not keep its memory
         nodes, Kt, r = body.elements[e], out.K[e - first], out.r[0, e]
         gather(nodes, state, state.alpha[e], layout, v)
         if any_tied(body.ties.kind[e]):
@@ -167,7 +166,8 @@ def fill(
             at = e if len(request.field.flux_density) > 1 else 0
             B = request.field.flux_density[at, p]
             copy_slopes(request.field.slopes, at, p, slopes)
-            J = section(w, point, levels, body.laws, request, B, slopes, stresses.S[e, p], stresses.kappa[e, p], across)
+            mixed = Mixed(stresses.S[e, p], stresses.kappa[e, p])
+            J = section(w, point, levels, request, B, slopes, mixed, across)
             if not J > 0.0:
                 return e, J
             out.energy[e, INTERNAL] += w.energy[INTERNAL]
@@ -209,13 +209,12 @@ def fill(
             for l in range(nodal):
                 out.r[1, e, l] = r_sum[l]
         if any_tied(body.ties.kind[e]):
-            tied = Tied(nodes, body.ties.kind[e], body.ties.host[e], body.normals[e])
             if tangent:
-                chain_matrix(body.ties, tied, state, layout, r, Kt)
-                chain_row(body.ties, tied, state, layout, out.r[1, e])
+                chain_matrix(body, e, state, layout, forces, Kt)
+                chain_row(body, e, state, layout, out.r[1, e])
                 for a in range(3 * modes):
-                    chain_row(body.ties, tied, state, layout, out.gain[e, a])
-            chain_row(body.ties, tied, state, layout, r)
+                    chain_row(body, e, state, layout, out.gain[e, a])
+            chain_row(body, e, state, layout, r)
         if tangent:
             for n in range(rest):
                 if transported[nodes[n]]:
@@ -255,8 +254,8 @@ def predict_stresses(
     full = layout.nodal + rest + 3 * modes
     v, dv, spins = np.zeros(full), np.zeros(full), np.zeros(layout.nodal)
     T, records, across = np.zeros((rest, 4, 3)), workspace(), level_scratch(body.by_level, body.levels.shape[2])
-    w = records[0]
     for e in range(len(body.elements)):
+        w = records[0]
         nodes = body.elements[e]
         gather(nodes, state, state.alpha[e], layout, v)
         _gather_increment(nodes, increment, layout, spins)
@@ -292,8 +291,9 @@ def level_stretches(body: Body, state: State, field: FloatArray, zeta: FloatArra
     """
     layout = body.layout
     v, records = np.zeros(layout.nodal + layout.q + 3 * layout.modes), workspace()
-    w, across = records[0], np.zeros((4, body.levels.shape[2]))
+    across = np.zeros((4, body.levels.shape[2]))
     for e in range(len(body.elements)):
+        w = records[0]
         gather(body.elements[e], state, state.alpha[e], layout, v)
         if any_tied(body.ties.kind[e]):
             stretch_directors(body.elements[e], body.normals[e], state, layout, v)

@@ -74,6 +74,7 @@ class Request(NamedTuple):
 
     Attributes
     ----------
+    laws : Laws
     field : LocalField
     mixed : bool
         Whether the geometric part of the tangent is made with given stresses in place of the state's.
@@ -81,6 +82,7 @@ class Request(NamedTuple):
         Whether there is to be a tangent.
     """
 
+    laws: Laws
     field: LocalField
     mixed: bool
     tangent: bool
@@ -213,12 +215,10 @@ def section(
     w: Record,
     point: Record,
     levels: AnyArray,
-    laws: Laws,
     request: Request,
     B: FloatArray,
     slopes: FloatArray | None,
-    S_mixed: FloatArray,
-    kappa_mixed: FloatArray,
+    mixed: Mixed,
     across: FloatArray | None,
 ) -> float:
     """Gradient and Hessian of a point that sees w.x; returns the least det F through the thickness.
@@ -229,7 +229,7 @@ def section(
     stretches level by level. B (levels, 3) is the field, `slopes` (levels, 36) its derivatives; None: it is uniform.
     """
     x, g, V, base, t, b, dg3, couples = w.x, w.g, w.V, w.base, w.t, w.b, w.dg3, w.couples
-    forces, tangent, by_level, c = w.forces, request.tangent, False, 0.0
+    laws, forces, tangent, by_level, c = request.laws, w.forces, request.tangent, False, 0.0
     _clear(w, tangent)
     if slopes is not None:
         clear_position(w, tangent)
@@ -270,12 +270,15 @@ def section(
                 couples[INTERNAL, i] -= base[a, j] * t[a, l] - base[a, l] * t[a, j]
         if tangent:
             if request.mixed:
-                _mix(w, S_mixed[k])
+                _mix(w, mixed.S[k])
             stress_vectors(w.R, w.P, G, volume, w.t_mixed)
             moduli_on_legs(w, G, volume)
             _level_hessian(w)
             for i in range(3):
-                w.t3[i] = w.t_mixed[2, i] + volume * b[2] * forces[M + i]
+                force = volume * forces[M + i]
+                w.t3[i] = w.t_mixed[2, i] + b[2] * force
+                t1, t2 = w.t_mixed[0, i] + b[0] * force, w.t_mixed[1, i] + b[1] * force
+                _add_stress_vector(w, MIXED, i, z, s, t1, t2, w.t3[i])
                 for l in range(3):
                     w.H_ωω[i, l] += volume * w.work_tangent[OMEGA + i, OMEGA + l]
             _scatter_level(w, z, s, scale, volume)
@@ -300,7 +303,7 @@ def section(
         _spin_to_quaternion(w, n2)
         if slopes is not None:
             finish_position(w, by_level)
-    w.energy[INTERNAL] += couple_stress(w, point.couple_metric, n2, kappa_mixed, request.mixed, tangent)
+    w.energy[INTERNAL] += couple_stress(w, point.couple_metric, n2, mixed.kappa, request.mixed, tangent)
     return least
 
 

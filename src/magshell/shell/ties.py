@@ -21,11 +21,12 @@ host, which belongs to the same body.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from magshell.arrays import FloatArray, IntArray
 from magshell.compiled import inline
 from magshell.shell.element import Layout
+from magshell.shell.point import MIXED
 from magshell.shell.rotation import LAST, NEXT
 from magshell.shell.state import State
 
@@ -54,13 +55,19 @@ class Ties(NamedTuple):
     arm: FloatArray
 
 
-class Tied(NamedTuple):
-    """An element with ties: its rows, `kind` (8,) and `host` (8,) of them, and its normals (8, 3)."""
+class TiedBody(Protocol):
+    """What is asked of the undeformed shell (`Body` of `loops.py`).
 
-    nodes: IntArray
-    kind: IntArray
-    host: IntArray
-    normals: FloatArray
+    (Numba frees the memory of views that a kernel packs into a tuple for functions without reference counting. So these
+    functions take the body and the number of an element.)
+    """
+
+    @property
+    def elements(self) -> IntArray: ...
+    @property
+    def normals(self) -> FloatArray: ...
+    @property
+    def ties(self) -> Ties: ...
 
 
 @inline
@@ -101,10 +108,10 @@ def _lever(ties: Ties, state: State, node: int, i: int) -> float:
 
 
 @inline
-def chain_row(ties: Ties, tied: Tied, state: State, layout: Layout, row: FloatArray) -> None:
+def chain_row(body: TiedBody, e: int, state: State, layout: Layout, row: FloatArray) -> None:
     """From factors or forces of u' and w' in a row to those of u, w, ω and s, which stands after ϑ."""
     for n in range(layout.u):
-        kind, node = tied.kind[n], tied.nodes[n]
+        kind, node = body.ties.kind[e, n], body.elements[e, n]
         if kind == FREE:
             continue
         if n < layout.w:
@@ -112,12 +119,12 @@ def chain_row(ties: Ties, tied: Tied, state: State, layout: Layout, row: FloatAr
             if n < layout.s:
                 along = 0.0
                 for i in range(3):
-                    along += (tied.normals[n, i] + state.w[node, i]) * row[layout.at_w + i * layout.w + n]
+                    along += (body.normals[e, n, i] + state.w[node, i]) * row[layout.at_w + i * layout.w + n]
                 row[layout.nodal + n] = along
             if kind >= TURNED:
                 for i in range(3):
                     j, k = NEXT[i], LAST[i]
-                    d_j, d_k = tied.normals[n, j] + state.w[node, j], tied.normals[n, k] + state.w[node, k]
+                    d_j, d_k = body.normals[e, n, j] + state.w[node, j], body.normals[e, n, k] + state.w[node, k]
                     f_j, f_k = row[layout.at_w + j * layout.w + n], row[layout.at_w + k * layout.w + n]
                     row[layout.at_q + i * layout.q + n] += scale * (d_j * f_k - d_k * f_j)
                 scale = 0.0
@@ -127,16 +134,16 @@ def chain_row(ties: Ties, tied: Tied, state: State, layout: Layout, row: FloatAr
             for i in range(3):
                 j, k = NEXT[i], LAST[i]
                 g_j, g_k = row[j * layout.u + n], row[k * layout.u + n]
-                torque = _lever(ties, state, node, j) * g_k - _lever(ties, state, node, k) * g_j
-                row[layout.at_q + i * layout.q + tied.host[n]] += torque
+                torque = _lever(body.ties, state, node, j) * g_k - _lever(body.ties, state, node, k) * g_j
+                row[layout.at_q + i * layout.q + body.ties.host[e, n]] += torque
 
 
 @inline
-def _chain_rows(ties: Ties, tied: Tied, state: State, layout: Layout, K: FloatArray) -> None:
+def _chain_rows(body: TiedBody, e: int, state: State, layout: Layout, K: FloatArray) -> None:
     """The same for all rows of a matrix at once, row by row in place of component by component."""
     nodal = layout.nodal
     for n in range(layout.u):
-        kind, node = tied.kind[n], tied.nodes[n]
+        kind, node = body.ties.kind[e, n], body.elements[e, n]
         if kind == FREE:
             continue
         if n < layout.w:
@@ -146,14 +153,14 @@ def _chain_rows(ties: Ties, tied: Tied, state: State, layout: Layout, K: FloatAr
                 for l in range(nodal):
                     along[l] = 0.0
                 for i in range(3):
-                    row, d = K[layout.at_w + i * layout.w + n], tied.normals[n, i] + state.w[node, i]
+                    row, d = K[layout.at_w + i * layout.w + n], body.normals[e, n, i] + state.w[node, i]
                     for l in range(nodal):
                         along[l] += d * row[l]
             if kind >= TURNED:
                 for i in range(3):
                     j, k = NEXT[i], LAST[i]
-                    d_j = scale * (tied.normals[n, j] + state.w[node, j])
-                    d_k = scale * (tied.normals[n, k] + state.w[node, k])
+                    d_j = scale * (body.normals[e, n, j] + state.w[node, j])
+                    d_k = scale * (body.normals[e, n, k] + state.w[node, k])
                     row_j, row_k = K[layout.at_w + j * layout.w + n], K[layout.at_w + k * layout.w + n]
                     turning = K[layout.at_q + i * layout.q + n]
                     for l in range(nodal):
@@ -166,9 +173,9 @@ def _chain_rows(ties: Ties, tied: Tied, state: State, layout: Layout, K: FloatAr
         if kind == RIGID:
             for i in range(3):
                 j, k = NEXT[i], LAST[i]
-                ρ_j, ρ_k = _lever(ties, state, node, j), _lever(ties, state, node, k)
+                ρ_j, ρ_k = _lever(body.ties, state, node, j), _lever(body.ties, state, node, k)
                 row_j, row_k = K[j * layout.u + n], K[k * layout.u + n]
-                turning = K[layout.at_q + i * layout.q + tied.host[n]]
+                turning = K[layout.at_q + i * layout.q + body.ties.host[e, n]]
                 for l in range(nodal):
                     turning[l] += ρ_j * row_k[l] - ρ_k * row_j[l]
 
@@ -180,10 +187,11 @@ def _add_turning(K: FloatArray, layout: Layout, n: int, i: int, j: int, value: f
 
 
 @inline
-def _add_curvature(ties: Ties, tied: Tied, state: State, layout: Layout, r: FloatArray, K: FloatArray) -> None:
-    """The second derivatives, with the forces r on u' and w'."""
+def _add_curvature(body: TiedBody, e: int, state: State, layout: Layout, forces: FloatArray, K: FloatArray) -> None:
+    """The second derivatives, with the forces on u' and w' that the geometric part is made with."""
+    r = forces[:, MIXED]
     for n in range(layout.u):
-        kind, node = tied.kind[n], tied.nodes[n]
+        kind, node = body.ties.kind[e, n], body.elements[e, n]
         if n < layout.w and kind == STRETCHED:
             for i in range(3):
                 at = layout.at_w + i * layout.w + n
@@ -192,39 +200,42 @@ def _add_curvature(ties: Ties, tied: Tied, state: State, layout: Layout, r: Floa
         if n < layout.w and kind >= TURNED:
             scale, along = 1.0 + state.s[node], 0.0
             for i in range(3):
-                along += r[layout.at_w + i * layout.w + n] * (tied.normals[n, i] + state.w[node, i])
+                along += r[layout.at_w + i * layout.w + n] * (body.normals[e, n, i] + state.w[node, i])
             for i in range(3):
-                f_i, d_i = r[layout.at_w + i * layout.w + n], tied.normals[n, i] + state.w[node, i]
+                f_i, d_i = r[layout.at_w + i * layout.w + n], body.normals[e, n, i] + state.w[node, i]
                 _add_turning(K, layout, n, i, i, -scale * along)
                 for j in range(3):
-                    f_j, d_j = r[layout.at_w + j * layout.w + n], tied.normals[n, j] + state.w[node, j]
+                    f_j, d_j = r[layout.at_w + j * layout.w + n], body.normals[e, n, j] + state.w[node, j]
                     _add_turning(K, layout, n, i, j, 0.5 * scale * (f_i * d_j + d_i * f_j))
                 if n < layout.s:
                     j, k = NEXT[i], LAST[i]
-                    d_j, d_k = tied.normals[n, j] + state.w[node, j], tied.normals[n, k] + state.w[node, k]
+                    d_j, d_k = body.normals[e, n, j] + state.w[node, j], body.normals[e, n, k] + state.w[node, k]
                     f_j, f_k = r[layout.at_w + j * layout.w + n], r[layout.at_w + k * layout.w + n]
                     at = layout.at_q + i * layout.q + n
                     K[layout.nodal + n, at] += d_j * f_k - d_k * f_j
                     K[at, layout.nodal + n] += d_j * f_k - d_k * f_j
         if kind == RIGID:
-            along, host = 0.0, tied.host[n]
+            along, host = 0.0, body.ties.host[e, n]
             for i in range(3):
-                along += r[i * layout.u + n] * _lever(ties, state, node, i)
+                along += r[i * layout.u + n] * _lever(body.ties, state, node, i)
             for i in range(3):
-                g_i, ρ_i = r[i * layout.u + n], _lever(ties, state, node, i)
+                g_i, ρ_i = r[i * layout.u + n], _lever(body.ties, state, node, i)
                 _add_turning(K, layout, host, i, i, -along)
                 for j in range(3):
-                    g_j, ρ_j = r[j * layout.u + n], _lever(ties, state, node, j)
+                    g_j, ρ_j = r[j * layout.u + n], _lever(body.ties, state, node, j)
                     _add_turning(K, layout, host, i, j, 0.5 * (g_i * ρ_j + ρ_i * g_j))
 
 
 @inline
-def chain_matrix(ties: Ties, tied: Tied, state: State, layout: Layout, r: FloatArray, K: FloatArray) -> None:
-    """From a matrix of u' and w' to one of u, w, ω and s; r are the forces on u' and w'. (Its transpose likewise.)"""
-    _chain_rows(ties, tied, state, layout, K)
+def chain_matrix(body: TiedBody, e: int, state: State, layout: Layout, forces: FloatArray, K: FloatArray) -> None:
+    """From a matrix of u' and w' to one of u, w, ω and s. (Its transpose likewise.)
+
+    Its geometric part is made with the mixed column of the `forces` (values, 3) on u' and w'.
+    """
+    _chain_rows(body, e, state, layout, K)
     for l in range(layout.nodal):
-        chain_row(ties, tied, state, layout, K[l])
+        chain_row(body, e, state, layout, K[l])
     for n in range(layout.s):
-        if tied.kind[n] == STRETCHED or tied.kind[n] == TURNED:
-            chain_row(ties, tied, state, layout, K[layout.nodal + n])
-    _add_curvature(ties, tied, state, layout, r, K)
+        if body.ties.kind[e, n] == STRETCHED or body.ties.kind[e, n] == TURNED:
+            chain_row(body, e, state, layout, K[layout.nodal + n])
+    _add_curvature(body, e, state, layout, forces, K)

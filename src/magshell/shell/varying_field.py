@@ -16,7 +16,7 @@ field varies, is left out of the tangent. All of this is compiled only for field
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from magshell.arrays import FloatArray
 from magshell.compiled import allocate, inline
 from magshell.magnetics.law import GRADIENTS, OMEGA, M, X
 from magshell.shell.element import Layout, contract
-from magshell.shell.point import MAGNETIC, PHI, SIZE, Q, Record, W
+from magshell.shell.point import MAGNETIC, MIXED, PHI, SIZE, Q, Record, W
 
 
 class ElementAt(NamedTuple):
@@ -45,7 +45,7 @@ def slopes_scratch(slopes: FloatArray | None, levels: int) -> FloatArray | None:
 
 
 @inline
-def copy_slopes(slopes: FloatArray | None, element: int, point: int, own: FloatArray | None) -> None:
+def copy_slopes(slopes: FloatArray | None, element: int, point: int, own: Any) -> None:
     """Fill those of a point."""
     if slopes is not None:
         for k in range(slopes.shape[2]):
@@ -79,8 +79,9 @@ def add_position(w: Record, point: Record, z: float, s: float, volume: float, by
         e[i] = bilinear * (point.D[i] + w.x[W + i])
         force = volume * w.forces[X + i]
         w.g_x[i] += force
-        g[W + i, MAGNETIC] += c * force
-        g[PHI, MAGNETIC] += e[i] * force
+        for column in (MAGNETIC, MIXED):
+            g[W + i, column] += c * force
+            g[PHI, column] += e[i] * force
     if not tangent:
         return
     for i in range(3):
@@ -167,7 +168,9 @@ def contract_position(
         point, layout = at.point, at.layout
         for n in range(layout.u):
             for i in range(3):
-                forces[i * layout.u + n, MAGNETIC] += point.position[n] * w.g_x[i]
+                force = point.position[n] * w.g_x[i]
+                forces[i * layout.u + n, MAGNETIC] += force
+                forces[i * layout.u + n, MIXED] += force
         if tangent:
             size = len(forces)
             rows, by_row, by_column = position[0, :SIZE], position[1, :size], position[2, :size]

@@ -278,13 +278,20 @@ def _couples(discretisation: Discretisation, F: FloatArray, R: FloatArray, flux_
 
 
 def _place(discretisation: Discretisation, element: int) -> str:
-    """An element by number, position and the supports that it touches."""
+    """An element by number, position and the support, joint or hinge that it touches."""
     mesh = discretisation.mesh
     centre = mesh.points[mesh.elements[element, :4]].mean(axis=0)
     position = ", ".join(f"{1e3 * x:.3g}" for x in centre)
     groups = _touched(discretisation, element)
-    beside = f", at support '{groups[0]}'" if groups else ""
+    beside = f", at support '{groups[0]}'" if groups else _joined(discretisation, element)
     return f"element {element} (at ({position}) mm{_of_part(discretisation, element, ', in')}{beside})"
+
+
+def _joined(discretisation: Discretisation, element: int) -> str:
+    """Whether sheets meet at a node of an element."""
+    rows, nodes = discretisation.rows, discretisation.mesh.elements[element]
+    places = {"hinge": rows.hinged, "joint": rows.joined}
+    return next((f", at a {name}" for name, those in places.items() if np.isin(nodes, those).any()), "")
 
 
 def _of_part(discretisation: Discretisation, element: int, of: str = " of") -> str:
@@ -295,7 +302,7 @@ def _of_part(discretisation: Discretisation, element: int, of: str = " of") -> s
 
 
 def _touched(discretisation: Discretisation, element: int) -> list[str]:
-    """Groups of the supports that an element has nodes of."""
-    mesh = discretisation.mesh
-    groups = [support.group for support in discretisation.model.supports]
-    return [group for group in groups if np.isin(mesh.elements[element], mesh.nodes_of(group)).any()]
+    """Groups and rigid bodies of the supports that an element has nodes of."""
+    model, nodes = discretisation.model, discretisation.mesh.elements[element]
+    groups = [support.group for support in model.supports]
+    return [group for group in groups if np.isin(nodes, model.shell.nodes_of(group)).any()]

@@ -166,7 +166,7 @@ class Path:
         -------
         ndarray, shape (rows,) or (rows, components)
             A row for each node or element. What may jump, such as stresses, has further rows after those of the nodes
-            where the shell has borders (`magshell.evaluation.patches`).
+            where the shell has borders or joints (`magshell.evaluation.patches`).
 
         Raises
         ------

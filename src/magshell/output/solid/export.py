@@ -66,7 +66,7 @@ def write_solid(path: Path, file: str | os.PathLike[str], step: int = -1) -> Wri
     Raises
     ------
     InputError
-        No such step, a name that says another format, a mesh of which no body can be made.
+        No such step, a name that says another format.
     OSError
         The disk refuses; the message names the file.
     """

@@ -11,10 +11,11 @@ from magshell.evaluation.outputs import chosen
 from magshell.linalg import make_solver
 from magshell.magnetics import COUPLINGS
 from magshell.mesh import Mesh
+from magshell.model.elastic import ElasticSupport
 from magshell.model.loads import LOADS, Load
 from magshell.model.model import Model
 from magshell.model.shell import Shell
-from magshell.model.springs import SPRINGS, Spring
+from magshell.model.springs import SPRINGS
 from magshell.model.stages import Stage
 from magshell.model.support import Support
 from magshell.model.supports import SUPPORTS
@@ -139,8 +140,8 @@ def _supports(tables: tuple[schema.SupportTable, ...], shell: Shell) -> list[Sup
     return supports
 
 
-def _springs(tables: tuple[schema.SpringTable, ...], shell: Shell) -> list[Spring]:
-    springs: list[Spring] = []
+def _springs(tables: tuple[schema.SpringTable, ...], shell: Shell) -> list[ElasticSupport]:
+    springs: list[ElasticSupport] = []
     for number, table in enumerate(tables):
         with at(f"springs[{number}].group"):
             shell.nodes_of(table.group)
