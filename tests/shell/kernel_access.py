@@ -36,13 +36,12 @@ def pack(parts, concatenate=np.concatenate):
 
 @Kernel
 def _section(points, levels, laws, request, e, p, x, S, kappa, energy, g, H):
-    records = workspace()
+    records, across = workspace(), np.zeros((4, levels.shape[2]))
     w = records[0]
     w.x[:] = x
-    across = np.zeros((4, levels.shape[2]))
     least = section(w, points[e, p], levels[e, p][: points[e, p].levels], laws, request, S, kappa, across)
     energy[:], g[:, :], H[:, :] = w.energy, w.g, w.H[:, : len(x)]
-    return least
+    return least + 0.0 * len(records)
 
 
 def energy_gradient_and_hessian(d, e, p, x, B, body=None):
@@ -67,6 +66,6 @@ def _hold(held, number, e, layout, v, vectors, r, K):
 def held_energy(held, number, e, layout, alpha):
     """Energy of a held vector (3,) of the undeformed element e."""
     size = 3 * layout.u + 3 * layout.w + layout.phi + 3 * layout.q + 3 * layout.modes
-    v, r, K = np.zeros(size + layout.q), np.zeros((size, 2)), np.zeros((size, padded(size)))
+    v, r, K = np.zeros(size + layout.q), np.zeros((size, 3)), np.zeros((size, padded(size)))
     v[layout.at_q + 4 * layout.q + layout.modes - 1 - number :: layout.modes] = alpha
     return _hold(held, number, e, layout, v, np.zeros((5, 3)), r, K)
