@@ -9,7 +9,7 @@ from magshell.shell import point
 from magshell.shell.bubble import hold_vector
 from magshell.shell.element import padded
 from magshell.shell.point import workspace
-from magshell.shell.section import Request, section
+from magshell.shell.section import LocalField, Mixed, Request, section
 
 SIZE = point.SIZE
 _ORDER = {
@@ -35,11 +35,12 @@ def pack(parts, concatenate=np.concatenate):
 
 
 @Kernel
-def _section(points, levels, laws, request, e, p, x, S, kappa, energy, g, H):
-    records, across = workspace(), np.zeros((4, levels.shape[2]))
+def _section(body, request, e, p, x, mixed, energy, g, H):
+    records, across = workspace(), np.zeros((4, body.levels.shape[2]))
     w = records[0]
     w.x[:] = x
-    least = section(w, points[e, p], levels[e, p][: points[e, p].levels], laws, request, S, kappa, across)
+    point, levels, B = body.points[e, p], body.levels[e, p], request.field.flux_density[0, p]
+    least = section(w, point, levels[: point.levels], request, B, None, mixed, across)
     energy[:], g[:, :], H[:, :] = w.energy, w.g, w.H[:, : len(x)]
     return least + 0.0 * len(records)
 
@@ -50,10 +51,11 @@ def energy_gradient_and_hessian(d, e, p, x, B, body=None):
     `body` is the discretisation's unless given.
     """
     body = body or d.reference.body
-    request = Request(np.asarray(B, dtype=float), mixed=False, tangent=True)
+    field = LocalField(np.array(np.broadcast_to(B, (1, *body.levels.shape[1:], 3)), dtype=float, order="C"), None)
+    request = Request(body.laws, field, mixed=False, tangent=True)
     energy, g, H = np.zeros(2), np.zeros((SIZE, 3)), np.zeros((SIZE, SIZE))
     S, kappa = np.zeros((body.levels.shape[2], 3, 3)), np.zeros((2, 3))
-    determinant = _section(body.points, body.levels, body.laws, request, e, p, x, S, kappa, energy, g, H)
+    determinant = _section(body, request, e, p, x, Mixed(S, kappa), energy, g, H)
     assert determinant > 0.0, f"the test's state is inadmissible: det F = {determinant:.3g}"
     return energy, g[:, :2], H
 

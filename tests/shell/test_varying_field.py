@@ -174,6 +174,7 @@ def test_nodal_forces_are_in_balance_with_the_field(coupling, parts):
     """Their sum and moment about the origin are minus force and torque of the field, integrated apart."""
     d, loading = in_field(jointed(patch((2, 2), surface=bowl), PARTS[parts], coupling=coupling))
     state = random_state(d, 9, strain=0.02)
+    state = state._replace(alpha=0.0 * state.alpha)  # which turn in a rigid rotation as well
     residual = d.assemble(Instant(state, loading), tangent=False).residual
     field = magnetic(d, state, loading)
     x, director = d.rows.points + state.u, d.rows.normals + state.w
