@@ -6,7 +6,7 @@ undeformed mid-surface,
     ∫ t · δu + m · δω = Σ_I F_I · δu_I + C_I · δω_I,    F_I = t ∫ N_I,    C_I = m ∫ M_I,
 
 is that of nodal forces, with the functions N_I of the displacement and M_I of the micro-rotation. On an element they
-are those of its type (for the displacement see `functions.py`); on an edge they are quadratic, those of the
+are those of its type (for the displacement see `shell/loaded.py`); on an edge they are quadratic, those of the
 micro-rotation linear where only corners carry it.
 """
 
