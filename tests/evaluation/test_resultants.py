@@ -122,7 +122,7 @@ def test_sections_of_a_magnetic_strip_are_in_equilibrium(coupling):
     reached = end_of(model, ms.Settings(first_step=0.1))
     assert np.abs(reached.state.u[:, 2]).max() > 0.4 * LENGTH
     d = reached.discretisation
-    forces = of_couplings(d.reference, d.couplings, reached.fields, reached.loading.flux_density)
+    forces = of_couplings(d.reference, d.couplings, reached.fields, reached.local_field)
     torque = magnetic_torque(d.reference, reached.fields, forces) * d.reference.geometry.volume[..., None]
     of_elements = torque.sum(axis=(1, 2))
     middles = d.mesh.points[d.mesh.elements].mean(axis=1)[:, 0]

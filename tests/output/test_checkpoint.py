@@ -181,7 +181,7 @@ def test_changed_numbers_are_noticed(file: Path) -> None:
     with np.load(io.BytesIO(content(waypoint(), ORIGIN))) as arrays:
         all_of_them = dict(arrays)
     for name, values in all_of_them.items():
-        if name in ("digest", "cpu_seconds") or values.dtype.kind != "f":
+        if name in ("digest", "cpu_seconds") or values.dtype.kind != "f" or not values.size:
             continue
         changed = values.copy()
         changed.flat[-1] = np.nextafter(changed.flat[-1], 1e9)

@@ -82,7 +82,7 @@ def test_scene_puts_body_and_arrow_where_the_camera_says(path, can_draw):
     colours = np.tile(np.array([0, 120, 0], dtype=np.uint8), (len(skin.at_points(u)), 1))
     width, height = 400, 300
     placed = skin.placed(converged(path.discretisation, path.steps[-1]))
-    scene, camera, arrow = draw(path.model.shell, placed, colours, np.array([0, 0, 1e-3]), (width, height))
+    scene, camera, arrow = draw(path.model.shell, placed, colours, np.array([0, 0, 1e-3]), [], (width, height))
 
     def pixel(point):
         x, y = camera.on_picture(point)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -166,7 +167,7 @@ def legend(element_groups):
     _legend(
         figure,
         dataclasses.replace(model.shell, mesh=ms.mesh.Mesh(mesh.points, mesh.elements, element_groups)),
-        remanence_marks(model, shown(model), AXES, False),
+        SimpleNamespace(marks=remanence_marks(model, shown(model), AXES, False), sources=set()),
         False,
     )
     figure.draw_without_rendering()

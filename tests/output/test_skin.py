@@ -34,8 +34,15 @@ def path_of(mesh, **outer):
     shell = ms.Shell(mesh, 1e-3, RUBBER, ms.remanence.constant([0.1, 0, 0]), regions=regions)
     model = ms.Model(shell, [ms.Clamp("left")], ms.UniformField([0, 0, 1e-3]))
     d = Discretisation(model, nested_dissection)
+    loading = model.loading(1.0)
     step = SimpleNamespace(
-        number=1, stage=0, load_factor=1.0, state=d.undeformed(), flux_density=model.field.vector, negative_pivots=0
+        number=1,
+        stage=0,
+        load_factor=1.0,
+        state=d.undeformed(),
+        flux_density=loading.flux_density,
+        drives=loading.drives,
+        negative_pivots=0,
     )
     return SimpleNamespace(model=model, discretisation=d, steps=[step])
 

@@ -153,12 +153,13 @@ def test_words_of_motion() -> None:
     assert text.startswith("halbach of 16, each a cuboid 10 mm × 10 mm × 20 mm, polarisation")
 
 
-def test_the_model_refuses_it_for_now(tmp_path, capsys) -> None:
-    with pytest.raises(ms.InputError, match=r"test\.toml: field: it varies in space .* a model takes a UniformField"):
-        build(read(MAGNET), "test.toml")
+def test_the_model_has_it(tmp_path, capsys) -> None:
+    problem = build(read(MAGNET), "test.toml")
+    assert not problem.model.field.is_uniform
+    assert problem.model.largest_field > 0.0
     (tmp_path / "magnet.toml").write_text(STRIP + MAGNET)
-    assert main(["check", str(tmp_path / "magnet.toml")]) == 2
-    assert "field: it varies in space" in capsys.readouterr().err
+    assert main(["check", str(tmp_path / "magnet.toml")]) == 0
+    assert "cylinder" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -15,12 +15,13 @@ VECTOR = some.tuples(NUMBER, NUMBER, NUMBER)
 
 
 def amounts(field: float, angle: float, load: float) -> Amounts:
-    return Amounts(field, angle, np.array([load, -2.0 * load]), np.full((3, 11), 0.1 * load))
+    return Amounts(np.array([field, angle]), np.array([load, -2.0 * load]), np.full((3, 11), 0.1 * load))
 
 
 def course(start: Amounts, end: Amounts) -> Course:
     """A stage in a field that turns about the axis (1, 2, 2)/3."""
-    return Course(Stage(), UniformField((0.3, -0.4, 1.2), rotation_axis=(1, 2, 2), rotation=(0.0,)), start, end)
+    field = UniformField((0.3, -0.4, 1.2), rotation_axis=(1, 2, 2), rotation=(0.0,))
+    return Course(Stage(), field, start, end, np.zeros(3))
 
 
 AMOUNTS = some.builds(amounts, NUMBER, some.floats(-4.0, 4.0), NUMBER)
@@ -42,8 +43,9 @@ def test_rate_is_the_derivative(start: Amounts, end: Amounts, at: float) -> None
 def test_start_and_end(start: Amounts, end: Amounts) -> None:
     """A stage begins and ends with its amounts, and half-way it has their mean."""
     one = course(start, end)
-    assert np.abs(one.at(1.0).flux_density - end.field * one.field.turned(end.angle)).max() < 1e-14
-    for ours, theirs in zip(one.at(0.0), Course(one.stage, one.field, end, start).at(1.0), strict=True):
+    multiplier, angle = end.drives
+    assert np.abs(one.at(1.0).flux_density - multiplier * one.field.turned(angle)).max() < 1e-14
+    for ours, theirs in zip(one.at(0.0), Course(one.stage, one.field, end, start, np.zeros(3)).at(1.0), strict=True):
         assert np.abs(ours - theirs).max() < 1e-14
     assert np.abs(one.at(0.5).held - 0.5 * (start.held + end.held)).max() < 1e-15
     assert np.abs(one.at(0.5).loads - 0.5 * (start.loads + end.loads)).max() < 1e-15
@@ -66,7 +68,7 @@ def test_a_turning_field_keeps_magnitude_and_share_of_the_axis(
 def test_stops_are_where_the_field_has_their_magnitudes(start: float, end: float, stops: list[float]) -> None:
     """Every crossing of a magnitude by |B| in the stage is one, in rising order, and the end."""
     field = UniformField((0.3, -0.4, 1.2), sorted(stops), history=(2.0,))
-    one = Course(Stage(stops=(0.3,)), field, amounts(start, 0.0, 0.0), amounts(end, 0.0, 0.0))
+    one = Course(Stage(stops=(0.3,)), field, amounts(start, 0.0, 0.0), amounts(end, 0.0, 0.0), np.zeros(3))
     found = one.stops()
     assert found == sorted(found)
     assert found[-1] == 1.0
@@ -85,7 +87,7 @@ def test_stops_are_where_the_field_has_their_magnitudes(start: float, end: float
 def test_stops_that_fall_together_are_one() -> None:
     one = Course(
         Stage(stops=(0.25, 0.5)), UniformField((0, 0, 1.0), (0.25, 0.75), history=(1.0,)),
-        amounts(0.0, 0.0, 0.0), amounts(1.0, 0.0, 0.0),
+        amounts(0.0, 0.0, 0.0), amounts(1.0, 0.0, 0.0), np.zeros(3),
     )  # fmt: skip
     assert one.stops() == [0.25, 0.5, 0.75, 1.0]
 

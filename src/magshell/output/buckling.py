@@ -81,7 +81,19 @@ def _draw(buckling: Buckling, mode: BucklingMode, file: pathlib.Path) -> None:
     size = SHOWN * buckling.path.model.shell.mesh.size
     increment = Increment(size * mode.mode, np.zeros_like(mode.state.alpha))
     shape = buckling.path.discretisation.moved(mode.state, increment)
+    drives = buckling.path.model.course(mode.stage).at(mode.load_factor).drives
     step = Step(
-        mode.number, mode.load_factor, shape, 0, 0.0, None, 0.0, mode.stage, mode.flux_density, np.zeros(0), None
+        mode.number,
+        mode.load_factor,
+        shape,
+        0,
+        0.0,
+        None,
+        0.0,
+        mode.stage,
+        mode.flux_density,
+        np.zeros(0),
+        None,
+        drives,
     )
     draw_shape(dataclasses.replace(buckling.path, steps=[step]), file, color="u")
