@@ -41,7 +41,7 @@ class DipoleTerm(NodalTerm):
         numbers = [number for number, body in enumerate(shell.rigid) if np.any(body.moment)]
         self._at = rows.nodes + np.array(numbers, dtype=np.int64)
         self._moments = np.array([shell.rigid[number].moment for number in numbers]).reshape(-1, 3)
-        self._field, self._rows, self._points = field, rows, rows.points[self._at]
+        self._field, self._points = field, rows.points[self._at]
         spins = Pairs("omega", "omega", self._at, self._at)
         places = [
             Pairs(row, column, self._at, self._at) for row, column in (("u", "u"), ("u", "omega"), ("omega", "u"))

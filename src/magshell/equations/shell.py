@@ -14,9 +14,10 @@ from magshell.equations.local_field import FieldAtLevels
 from magshell.equations.numbering import Numbering
 from magshell.equations.scatter import Destination, Elements, add_matrices, turn_matrices
 from magshell.equations.term import Contribution, InvertedElement
-from magshell.magnetics.fields import Field, UniformField
+from magshell.magnetics.fields import Field
 from magshell.model.constraints import Constraints
 from magshell.model.course import Loading
+from magshell.model.model import NO_FIELD
 from magshell.shell import loops
 from magshell.shell.body import Reference
 from magshell.shell.element import padded
@@ -24,7 +25,6 @@ from magshell.shell.geometry import unit_forces
 from magshell.shell.section import LocalField, Request
 from magshell.shell.unknowns import COLUMNS, COMPONENTS
 
-NO_FIELD = UniformField((0.0, 0.0, 0.0))
 ROUND_OFF = 8.0 * np.finfo(float).eps
 # Elements whose matrices are made before they are inserted: they stay in the processor's cache.
 BATCH = 32

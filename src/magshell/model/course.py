@@ -88,19 +88,21 @@ class Course(NamedTuple):
     def at(self, load_factor: float) -> Loading:
         """The loading at a load factor."""
         now = self.amounts(load_factor)
-        return Loading(self._told(self.field.at, now.drives), now.loads, now.held, now.drives)
+        told = self._told(lambda: self.field.at(now.drives, self.centre[None], second=False))
+        return Loading(told, now.loads, now.held, now.drives)
 
     def rate(self, load_factor: float) -> Loading:
         """Its derivative with respect to the load factor."""
         now, start, end = self.amounts(load_factor), self.start, self.end
         drives = end.drives - start.drives
-        change = self._told(self.field.rate, now.drives, drives)
+        change = self._told(lambda: self.field.rate(now.drives, drives, self.centre[None]))
         return Loading(change, end.loads - start.loads, end.held - start.held, drives)
 
-    def _told(self, of_field: Callable[..., Values], *amounts: FloatArray) -> FloatArray:
-        """Flux density at the centre; NaN is never told, zero where the field is not known there."""
+    @staticmethod
+    def _told(values: Callable[[], Values]) -> FloatArray:
+        """Flux density (3,) of values at the centre; zero where the field is not known there."""
         try:
-            return np.array(of_field(*amounts, self.centre[None]).flux_density[0])
+            return np.array(values().flux_density[0])
         except FieldUnknown:
             return np.zeros(3)
 

@@ -79,12 +79,13 @@ def check_supported(
 
     `normals` are those of the places (places, 3), zero for rigid bodies.
     """
-    mesh, parts = places.mesh, _parts(places)
+    mesh, owner, points = places.mesh, places.owner, places.points
+    parts = _parts(places, owner)
     for number, elements in enumerate(parts):
         nodes = np.unique(mesh.elements[elements])
-        bodies = places.owner[nodes]
+        bodies = owner[nodes]
         nodes = np.append(nodes, np.unique(bodies[bodies >= 0]))
-        motions = free_motions(places.points, normals, nodes, constraints, springs)
+        motions = free_motions(points, normals, nodes, constraints, springs)
         if len(motions) == 0:
             continue
         which = "the body" if len(parts) == 1 else f"part {number + 1} of {len(parts)} (element {elements[0]} …)"
@@ -98,9 +99,9 @@ def check_supported(
         )
 
 
-def _parts(places: Places) -> list[IntArray]:
+def _parts(places: Places, owner: IntArray) -> list[IntArray]:
     """Elements of each part of the mesh; parts that a rigid body joins are one."""
-    parts, owner = places.mesh.parts, places.owner
+    parts = places.mesh.parts
     if not places.bodies:
         return parts
     bodies = [np.unique(owner[np.unique(places.mesh.elements[elements])]) for elements in parts]

@@ -56,11 +56,7 @@ class Ties(NamedTuple):
 
 
 class TiedBody(Protocol):
-    """What is asked of the undeformed shell (`Body` of `loops.py`).
-
-    (Numba frees the memory of views that a kernel packs into a tuple for functions without reference counting. So these
-    functions take the body and the number of an element.)
-    """
+    """What is asked of the undeformed shell (`Body` of `loops.py`)."""
 
     @property
     def elements(self) -> IntArray: ...
