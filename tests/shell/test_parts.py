@@ -120,6 +120,15 @@ def test_mixed_tangent_with_the_states_own_stresses_is_the_plain_one(parts, elem
     assert max(errors) < 1e-12, f"tangent {errors[0]:.1e}, right side {errors[1]:.1e}"
 
 
+SECOND = np.array([-1 / 560, 8 / 315, -1 / 5, 8 / 5, -205 / 72, 8 / 5, -1 / 5, 8 / 315, -1 / 560])
+"""Second differences of eighth order, to be divided by the square of the step."""
+
+
+def second_slope(function, step):
+    """Second derivative at 0."""
+    return sum(weight * function(k * step) for k, weight in zip(range(-4, 5), SECOND, strict=True)) / step**2
+
+
 @each_body
 @pytest.mark.parametrize("coupling", CONSERVATIVE, ids=name_of)
 def test_mixed_tangent_with_other_stresses_is_symmetric_and_keeps_the_residual(parts, element, coupling):

@@ -168,11 +168,7 @@ class Mesh:
         InputError
             There is no element group of that name; the message has the nearest one.
         """
-        if name in self.element_groups:
-            return self.element_groups[name]
-        kind = self._kinds.get(name)
-        fault = f"'{name}' is a group of {kind}s, not of elements" if kind else f"There is no element group '{name}'"
-        raise InputError(f"{fault}. {suggest(name, self.element_groups)}")
+        return self._of_kind("element", self.element_groups, name)
 
     def edges_of(self, name: str) -> IntArray:
         """Edges (k, 3) of an edge group: end, end, middle.
@@ -182,11 +178,15 @@ class Mesh:
         InputError
             There is no edge group of that name; the message has the nearest one.
         """
-        if name in self.edge_groups:
-            return self.edge_groups[name]
+        return self._of_kind("edge", self.edge_groups, name)
+
+    def _of_kind(self, wanted: str, groups: Mapping[str, IntArray], name: str) -> IntArray:
+        """The members of a group that must be of a kind."""
+        if name in groups:
+            return groups[name]
         kind = self._kinds.get(name)
-        fault = f"'{name}' is a group of {kind}s, not of edges" if kind else f"There is no edge group '{name}'"
-        raise InputError(f"{fault}. {suggest(name, self.edge_groups)}")
+        fault = f"'{name}' is a group of {kind}s, not of {wanted}s" if kind else f"There is no {wanted} group '{name}'"
+        raise InputError(f"{fault}. {suggest(name, groups)}")
 
     def nodes_of(self, name: str) -> IntArray:
         """Sorted node numbers of an element, edge or node group, mid-side nodes included.

@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from magshell.arrays import FloatArray
 from magshell.errors import InputError
 from magshell.materials import BY_DEFAULT, DEFAULTS, Multiple, own_keys
 
@@ -57,3 +59,20 @@ def positive(where: str, value: Any, unit: str) -> float:
     if not np.isfinite(number) or number <= 0.0:
         raise InputError(f"{where} is {number:g} {unit}; it must be positive and finite")
     return number
+
+
+def three_numbers(where: str, name: str, value: ArrayLike) -> FloatArray:
+    """Three finite numbers.
+
+    Raises
+    ------
+    InputError
+        They are not.
+    """
+    try:
+        found = np.array(value, dtype=float)
+    except (TypeError, ValueError):
+        found = np.empty(0)
+    if found.shape != (3,) or not np.all(np.isfinite(found)):
+        raise InputError(f"{where}: {name} is {value!r}; it needs 3 finite numbers")
+    return found

@@ -8,7 +8,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from magshell.arrays import FloatArray
@@ -87,15 +86,6 @@ class ElasticSupport(ABC):
     @abstractmethod
     def along(self) -> FloatArray | None:
         """Direction (3,) in which they are drawn; None: none in particular."""
-
-    def _vector(self, name: str, value: ArrayLike) -> FloatArray:
-        try:
-            found = np.array(value, dtype=float)
-        except (TypeError, ValueError):
-            found = np.empty(0)
-        if found.shape != (3,) or not np.all(np.isfinite(found)):
-            raise InputError(f"{self.label}: {name} is {value!r}; it needs 3 finite numbers")
-        return found
 
     @property
     def label(self) -> str:

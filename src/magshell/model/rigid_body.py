@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.mesh import Mesh
+from magshell.model.checked import three_numbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,8 +49,8 @@ class RigidBody:
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", self.name or self.group)
         if self.point is not None:
-            object.__setattr__(self, "point", self._vector("point", self.point))
-        object.__setattr__(self, "moment", self._vector("moment", self.moment))
+            object.__setattr__(self, "point", three_numbers(self.label, "point", self.point))
+        object.__setattr__(self, "moment", three_numbers(self.label, "moment", self.moment))
         if not isinstance(self.mass, int | float | np.number) or not 0.0 <= self.mass < np.inf:
             raise InputError(f"{self.label}: mass is {self.mass!r}; it must be a number, 0 or positive")
 
@@ -57,15 +58,6 @@ class RigidBody:
     def label(self) -> str:
         """Its name in messages."""
         return f"rigid body '{self.name}'"
-
-    def _vector(self, name: str, value: ArrayLike) -> FloatArray:
-        try:
-            vector = np.array(value, dtype=float)
-        except (TypeError, ValueError):
-            vector = np.empty(0)
-        if vector.shape != (3,) or not np.all(np.isfinite(vector)):
-            raise InputError(f"{self.label}: {name} is {value!r}; it needs 3 finite numbers")
-        return vector
 
     def reference_point(self, mesh: Mesh) -> FloatArray:
         """Its reference point (3,), m."""

@@ -23,6 +23,7 @@ from numpy.typing import ArrayLike
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.keys import Key
+from magshell.model.checked import three_numbers
 from magshell.model.elastic import Anchored, ElasticSupport
 from magshell.model.loads.dead import nodal
 from magshell.model.loads.distribution import Products, centroid_weights, products
@@ -102,7 +103,7 @@ class Spring(ElasticSupport):
             else:
                 weights[: len(shell.mesh.points)] = centroid_weights(shell, [self.group])
         blocks = density * shared.values[:, None, None] * self._projection
-        about = None if self.point is None else self._vector("point", self.point)
+        about = None if self.point is None else three_numbers(self.label, "point", self.point)
         return _Springs(shared.rows, shared.columns, blocks, weights, about)
 
     def _products(self, shell: Shell, places: Places, key: str) -> Products:
@@ -141,7 +142,7 @@ class Spring(ElasticSupport):
         """1 or n ⊗ n (3, 3)."""
         if self.direction is None:
             return np.eye(3)
-        unit = self._vector("direction", self.direction)
+        unit = three_numbers(self.label, "direction", self.direction)
         if not np.any(unit):
             raise InputError(f"{self.label}: direction is {self.direction!r}; it must not be zero")
         unit = unit / np.linalg.norm(unit)
@@ -157,7 +158,7 @@ class Spring(ElasticSupport):
     @property
     def along(self) -> FloatArray | None:
         """Their direction."""
-        return None if self.direction is None else self._vector("direction", self.direction)
+        return None if self.direction is None else three_numbers(self.label, "direction", self.direction)
 
     @property
     def legend(self) -> str:

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.keys import Key
+from magshell.model.checked import three_numbers
 from magshell.model.elastic import Anchored, ElasticSupport
 from magshell.model.loads.dead import nodal
 from magshell.model.loads.load import Pairs
@@ -65,13 +66,13 @@ class TorsionSpring(ElasticSupport):
                 raise InputError(f"stiffness is {self.stiffness!r}; it must be positive and finite")
         weights = np.zeros(places.number)
         weights[places.named(self.group)] = 1.0
-        about = None if self.point is None else self._vector("point", self.point)
+        about = None if self.point is None else three_numbers(self.label, "point", self.point)
         return _Torsion(places.named(self.group), float(self.stiffness), self.along[None], weights, about)
 
     @property
     def along(self) -> FloatArray:
         """The axis, of length 1."""
-        axis = self._vector("axis", self.axis)
+        axis = three_numbers(self.label, "axis", self.axis)
         if not np.any(axis):
             raise InputError(f"{self.label}: axis is {self.axis!r}; it must not be zero")
         return axis / np.linalg.norm(axis)

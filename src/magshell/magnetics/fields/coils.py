@@ -24,6 +24,14 @@ CURRENT_KEY = Key("Current", "In the wire, at multiplier 1; positive turns from 
 TURNS = Key("Count", "Windings.", "1")
 LAYERS = Key("Count", "Of the winding, one about the other, with equal numbers of turns.", "1")
 SPACING = Key("PositiveLength", "From layer to layer, outwards.", "none")
+WINDING = {
+    "height": Key("PositiveLength", "Along its third axis."),
+    "current": CURRENT_KEY,
+    "turns": Key("Count", "Windings of all layers together."),
+    "layers": LAYERS,
+    "spacing": SPACING,
+}
+"""Keys that windings of several layers have."""
 WIRE = 0.02
 """Radius of a drawn wire over the size of the coil."""
 
@@ -177,11 +185,7 @@ class Solenoid(Coil):
     kind: ClassVar[str] = "solenoid"
     keys: ClassVar = {
         "diameter": Key("PositiveLength", "Of the innermost layer."),
-        "height": Key("PositiveLength", "Along its third axis."),
-        "current": CURRENT_KEY,
-        "turns": Key("Count", "Windings of all layers together."),
-        "layers": LAYERS,
-        "spacing": SPACING,
+        **WINDING,
     }
 
     def __post_init__(self) -> None:
@@ -246,11 +250,7 @@ class RectangularWinding(Coil):
     kind: ClassVar[str] = "rectangular"
     keys: ClassVar = {
         "sides": Key("PlaneSides", "Of the innermost layer, along its first and second axis."),
-        "height": Key("PositiveLength", "Along its third axis."),
-        "current": CURRENT_KEY,
-        "turns": Key("Count", "Windings of all layers together."),
-        "layers": LAYERS,
-        "spacing": SPACING,
+        **WINDING,
     }
 
     def __post_init__(self) -> None:
