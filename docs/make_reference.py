@@ -31,6 +31,7 @@ from magshell.magnetics.remanence import REMANENCES
 from magshell.materials import MATERIALS, MODULI, keys_of
 from magshell.model.loads import LOADS
 from magshell.model.parts import MOST_LEVELS
+from magshell.model.repeated import REPEATED
 from magshell.model.springs import SPRINGS
 from magshell.model.supports import SUPPORTS
 from magshell.problem import examples, fields, schema
@@ -500,6 +501,7 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "springs": "Elastic supports.",
             "rigid": "Groups that move as rigid bodies.",
             "hinges": "Edges along which sheets may turn against each other.",
+            "repeated": "Motions that take the shell to its neighbours in a structure of many alike.",
             "stages": "Parts of the load path, in sequence; left out: one, or as many as the longest history has.",
             "probes": "Nodes to follow: a name and the reference position.",
             "results": "Axes of tensors, and what files hold beside the usual.",
@@ -540,6 +542,10 @@ DESCRIBED = {
         name: Described(table, SPRINGS[name].keys, {"kind": "Which springs."})
         for name, table in schema.spring_tables().items()
     },
+    **{
+        name: Described(table, REPEATED[name].keys, {"kind": "Which repetition."})
+        for name, table in schema.repeated_tables().items()
+    },
 }
 TABLES |= {
     name: (one.table, {**one.which, **{key: about.meaning for key, about in one.keys.items()}})
@@ -561,6 +567,7 @@ TOP = {
     "springs": "list of tables",
     "rigid": "list of tables",
     "hinges": "list of tables",
+    "repeated": "list of tables",
     "stages": "list of tables",
     "probes": "table of positions",
 }

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from magshell.model.loads import Force, Gravity, Moment, Pressure, Traction
     from magshell.model.model import Model
     from magshell.model.region import Layer, Region
+    from magshell.model.repeated import Cyclic, Periodic
     from magshell.model.rigid_body import RigidBody
     from magshell.model.shell import Shell
     from magshell.model.springs import Spring
@@ -92,6 +93,7 @@ _HOME = {
     "magshell.model.torsion_spring": ("TorsionSpring",),
     "magshell.model.stages": ("Stage",),
     "magshell.model.hinge": ("Hinge",),
+    "magshell.model.repeated": ("Cyclic", "Periodic"),
     "magshell.model.rigid_body": ("RigidBody",),
     "magshell.model.supports": ("Clamp", "Prescribe", "SimpleSupport", "SymmetryPlane", "Turn"),
 }
@@ -111,6 +113,7 @@ __all__ = [
     "Clamp",
     "CoilSystem",
     "CriticalPoint",
+    "Cyclic",
     "DeformationGradientEnergy",
     "Force",
     "FunctionField",
@@ -133,6 +136,7 @@ __all__ = [
     "Motion",
     "Observer",
     "Path",
+    "Periodic",
     "Prescribe",
     "Pressure",
     "Region",

@@ -158,7 +158,7 @@ class Discretisation:
             right_side[self.numbering.equations] = -condensed[self.free]
         squares = _sum(part.scale for part in parts)
         inner = max(part.inner for part in parts)
-        matrix = self._insertion.matrix if tangent else None
+        matrix = self._insertion.tangent() if tangent else None
         return Assembly(matrix, right_side, residual, self._relative(residual, squares, inner))
 
     def from_nodes(self, instant: Instant) -> FloatArray:
@@ -199,7 +199,7 @@ class Discretisation:
     def _expanded(self, solution: FloatArray, imposed: FloatArray | None, whole: bool) -> Increment:
         nodal = np.zeros((len(self.rows.of), COMPONENTS)) if imposed is None else imposed.copy()
         nodal[self.free] = solution[self.numbering.equations]
-        independent = self.to_global(self.rows.shared(nodal))
+        independent = self.to_global(self.rows.jumped(self.rows.shared(nodal)))
         alpha = self.shell.recovered(independent, whole)
         return Increment(self.dependence.spread(independent, self._levers), alpha)
 
@@ -217,12 +217,13 @@ class Discretisation:
 
     def imposed(self, held: FloatArray) -> FloatArray:
         """What is held of nodal values (nodes, 11) in the nodes' frames; zero elsewhere."""
-        return np.where(self.model.constraints.fixed, held, 0.0)
+        return self.rows.jumped(np.where(self.model.constraints.fixed, held, 0.0))
 
     def with_imposed(self, increment: Increment, held: FloatArray) -> Increment:
         """An increment whose held components are put to values (nodes, 11) in the nodes' frames."""
         fixed = self.model.constraints.fixed
-        return Increment(self.to_global(np.where(fixed, held, self.to_frames(increment.nodal))), increment.alpha)
+        nodal = self.rows.jumped(np.where(fixed, held, self.to_frames(increment.nodal)))
+        return Increment(self.to_global(nodal), increment.alpha)
 
     def largest(self, increment: Increment) -> tuple[float, str]:
         """Largest magnitude in an increment, in body lengths, directors, thickness ratios and radians, and where."""

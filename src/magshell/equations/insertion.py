@@ -12,6 +12,7 @@ import scipy.sparse as sp
 from magshell.arrays import FloatArray, IntArray
 from magshell.equations.frames import bases
 from magshell.equations.numbering import Numbering
+from magshell.equations.reduction import Reduction
 from magshell.equations.scatter import Destination, Elements
 from magshell.model.constraints import Constraints
 from magshell.model.loads import Pairs
@@ -35,12 +36,18 @@ def destination(elements: Elements, numbering: Numbering) -> Destination:
 
 
 def _slots(elements: Elements, place: IntArray) -> tuple[IntArray, IntArray]:
-    """Places (elements, slots) of the elements, and the slot (values,) of each value (see `Destination`)."""
-    moved, own = place[elements.nodes, COLUMNS["u"].start], place[elements.nodes, COLUMNS["phi"].start]
-    if np.array_equal(moved, own):
-        return own, elements.node
-    of_row = np.isin(elements.component, (COLUMNS["phi"].start, COLUMNS["s"].start))
-    return np.concatenate([moved, own], axis=1), elements.node + np.where(of_row, moved.shape[1], 0)
+    """Places (elements, slots) of the elements, and the slot (values,) of each value (see `Destination`).
+
+    Fields whose values are elsewhere (on rigid bodies, beyond a jump) have slots of their own.
+    """
+    places: list[IntArray] = []
+    slot, width = elements.node.copy(), elements.nodes.shape[1]
+    for columns in COLUMNS.values():
+        there = place[elements.nodes, columns.start]
+        number = next((n for n, known in enumerate(places) if np.array_equal(known, there)), len(places))
+        places += [there] if number == len(places) else []
+        slot[(columns.start <= elements.component) & (elements.component < columns.stop)] += number * width
+    return np.concatenate(places, axis=1), slot
 
 
 def summed(to: Destination, forces: FloatArray, nodes: int) -> FloatArray:
@@ -61,10 +68,15 @@ class Insertion:
     def __init__(self, numbering: Numbering, constraints: Constraints) -> None:
         self.numbering, self.constraints = numbering, constraints
         self.data = np.zeros(numbering.indices.size)
-        self.matrix = sp.csc_array(
+        self._matrix = sp.csc_array(
             (self.data, numbering.indices, numbering.indptr.astype(numbering.indices.dtype)),
-            shape=(numbering.dofs, numbering.dofs),
+            shape=(numbering.placed, numbering.placed),
         )
+        self._reduction = Reduction(self._matrix, numbering.following) if numbering.following is not None else None
+
+    def tangent(self) -> sp.csc_array:
+        """The tangent of the free unknowns; the next insertion overwrites its values."""
+        return self._matrix if self._reduction is None else self._reduction.of(self.data)
 
     def blocks(self, pairs: Pairs) -> IntArray:
         """Positions (n, 3, 3) in the tangent's values of the blocks of pairs; -1 where a component is held."""

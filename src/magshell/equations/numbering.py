@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from magshell.arrays import AnyArray, IntArray
-from magshell.model.rows import Rows
+from magshell.model.rows import Rows, U
 from magshell.shell.unknowns import COLUMNS
 
 Ordering = Callable[[sp.csr_array], IntArray]
@@ -26,14 +26,20 @@ class Numbering:
     cliques : sequence of ndarray, shape (n, m)
         Rows that are coupled with each other, row by row.
     ordering : callable
-        From the graph of the mesh nodes (nodes, nodes) to their order of elimination; rigid bodies come last.
+        From the graph of the mesh nodes (nodes, nodes) to their order of elimination; rigid bodies and jumps come last.
 
     Attributes
     ----------
     dofs : int
         Number of equations.
+    equations : ndarray, shape (dofs,)
+        Equation of each free unknown.
+    placed : int
+        Number of the unknowns that the tangent is inserted for: those of the equations, and u beyond a jump.
     number : ndarray, shape (rows, 11)
-        Equation, -1 where fixed or absent. Rows that share an unknown share its equation.
+        Of these, -1 where fixed or absent. Rows that share an unknown share its number.
+    following : csr_array, shape (placed, dofs), or None
+        The former as a combination of the free unknowns; None: they are the same.
     rank : ndarray, shape (rows, 11)
         Equation minus the first one of its place.
     place : ndarray, shape (rows, 11)
@@ -46,7 +52,9 @@ class Numbering:
 
     def __init__(self, rows: Rows, free: AnyArray, cliques: Sequence[IntArray], ordering: Ordering) -> None:
         graph, count = place_graph(rows, cliques), rows.places
-        order = np.append(ordering(sp.csr_array(graph[: rows.nodes, : rows.nodes])), np.arange(rows.nodes, count))
+        order = elimination_order(rows, cliques, ordering)
+        free, own = free.copy(), free
+        free[rows.images.beyond.rows, U] = True
         counts = np.bincount(rows.of, free.sum(axis=1), minlength=count).astype(np.int64)
         first = np.empty(count, dtype=np.int64)
         first[order] = np.cumsum(counts[order]) - counts[order]
@@ -57,8 +65,12 @@ class Numbering:
         self.place, self.rank = rows.place, rows.shared(rank)
         self.number = rows.shared(np.where(free, first[rows.of][:, None] + rank, -1))
         self.partly_held: AnyArray = np.isin(np.sum(self.number[:, COLUMNS["omega"]] < 0, axis=1), (1, 2))
-        self.equations = self.number[free]
-        self.dofs = int(counts.sum())
+        self.placed = int(counts.sum())
+        self.equations, self.following = self.number[own], None
+        if rows.images.beyond.rows.size:
+            self.following = _following(rows, self.number, own)
+            self.equations = np.searchsorted(np.sort(self.equations), self.equations)
+        self.dofs = len(self.equations)
         self._set_pattern(graph, order, counts)
 
     def _set_pattern(self, graph: sp.csr_array, order: IntArray, counts: IntArray) -> None:
@@ -88,12 +100,38 @@ class Numbering:
         return np.asarray(found, dtype=np.int64).reshape(columns.shape) - 1
 
 
-def place_graph(rows: Rows, cliques: Sequence[IntArray]) -> sp.csr_array:
-    """Graph (places, places) of what is coupled."""
+def _following(rows: Rows, number: IntArray, free: AnyArray) -> sp.csr_array:
+    """The placed unknowns as a combination of the free ones (placed, free)."""
+    kept, (beyond, roots, steps) = np.sort(number[free]), rows.images.beyond
+    one, other, factor = [kept], [kept], [np.ones(len(kept))]
+    leading = [(number[roots, U], np.ones(len(roots)))]
+    leading += [(number[jump, U][None], along) for jump, along in zip(rows.jumps, steps.T, strict=True)]
+    for columns, times in leading:
+        columns = np.broadcast_to(columns, (len(beyond), 3))
+        there = (columns >= 0) & (times != 0.0)[:, None]
+        one.append(number[beyond, U][there])
+        other.append(columns[there])
+        factor.append(np.broadcast_to(times[:, None], there.shape)[there])
+    at = np.concatenate(one), np.searchsorted(kept, np.concatenate(other))
+    return sp.csr_array((np.concatenate(factor), at), shape=(int(number.max()) + 1, len(kept)))
+
+
+def elimination_order(rows: Rows, cliques: Sequence[IntArray], ordering: Ordering) -> IntArray:
+    """Order of the places: the nodes by an ordering of their graph, then rigid bodies and jumps."""
+    graph = place_graph(rows, cliques, joined=True)
+    nodes = ordering(sp.csr_array(graph[: rows.nodes, : rows.nodes]))
+    return np.append(nodes, np.arange(rows.nodes, rows.places))
+
+
+def place_graph(rows: Rows, cliques: Sequence[IntArray], joined: bool = False) -> sp.csr_array:
+    """Graph (places, places) of what is coupled; `joined`: with u beyond jumps at the roots."""
     if rows.plain:
         return graph_of(cliques, rows.places)
-    moved = rows.place[:, COLUMNS["u"].start]
-    return graph_of([np.concatenate([rows.of[clique], moved[clique]], axis=1) for clique in cliques], rows.places)
+    place = rows.place
+    if joined:
+        place[rows.images.beyond.rows, U] = rows.images.beyond.roots[:, None]
+    places = np.unique(place[:, [columns.start for columns in COLUMNS.values()]], axis=1).T
+    return graph_of([np.concatenate([one[clique] for one in places], axis=1) for clique in cliques], rows.places)
 
 
 def graph_of(cliques: Sequence[IntArray], nodes: int) -> sp.csr_array:

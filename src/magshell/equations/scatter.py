@@ -32,8 +32,8 @@ class Destination(NamedTuple):
     ----------
     elements : Elements
     slot : ndarray, shape (values,)
-        Place of the element at which each value is: its nodes, and where unknowns of one node are at two places (on
-        rigid bodies) once more its nodes, for φ and s.
+        Place of the element at which each value is: its nodes, and once more its nodes where unknowns of one node are
+        at several places (on rigid bodies, beyond a jump).
     entry : ndarray, shape (elements, values)
         Node and column of each value, as places of flat nodal arrays.
     number, rank : ndarray, shape (nodes, 11)

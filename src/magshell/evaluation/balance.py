@@ -3,6 +3,9 @@
 The forces and couples that supports and loads exert, taken at the deformed nodes, must balance those of the field,
 which are integrated here independently of the element kernels, from the point values of F and R̃. (A uniform field
 exerts no force.)
+
+Of a part that is repeated about an axis the sums over all copies balance: what its own sums have along the axis. From
+cell to cell forces cancel, and those on the jumps have the periods as arms.
 """
 
 from __future__ import annotations
@@ -149,19 +152,24 @@ def balance(discretisation: Discretisation, state: State, loading: Loading, resi
     moments = cross(position, reaction[:, :3]) + cross(director, reaction[:, 3:6]) + reaction[:, COLUMNS["omega"]]
     load_moments = cross(position, load[:, :3]) + cross(director, load[:, 3:6]) + load[:, COLUMNS["omega"]]
     field = magnetic(discretisation, state, loading)
-    force_sum, load_sum = reaction[:, :3].sum(axis=0), load[:, :3].sum(axis=0)
-    moment_sum, load_moment_sum = moments.sum(axis=0), load_moments.sum(axis=0)
     force_scale = _sum_of_magnitudes(reaction[:, :3]) + _sum_of_magnitudes(load[:, :3]) + field.force_scale
     force_scale += _sum_of_magnitudes(load[:, 3:6] + load[:, COLUMNS["omega"]]) / discretisation.mesh.size
     moment_scale = _sum_of_magnitudes(moments) + _sum_of_magnitudes(load_moments) + field.torque_scale
+    jumps = discretisation.rows.jumps
+    reaction[jumps, :3], load[jumps, :3] = 0.0, 0.0
+    force_sum, load_sum = reaction[:, :3].sum(axis=0), load[:, :3].sum(axis=0)
+    moment_sum, load_moment_sum = moments.sum(axis=0), load_moments.sum(axis=0)
+    forces, torques = force_sum + load_sum + field.force, moment_sum + load_moment_sum + field.torque
+    for one in discretisation.model.shell.repeated:
+        forces, torques = one.of_the_whole(forces, torques)
     return Balance(
         force_sum,
         moment_sum,
         field.torque,
         load_sum,
         load_moment_sum,
-        _over(force_sum + load_sum + field.force, force_scale),
-        _over(moment_sum + load_moment_sum + field.torque, moment_scale),
+        _over(forces, force_scale),
+        _over(torques, moment_scale),
         force_scale,
         moment_scale,
     )

@@ -26,7 +26,7 @@ from magshell.shell import rotation
 from magshell.shell.point import INTERNAL
 from magshell.shell.section import LocalField
 from magshell.shell.state import State
-from magshell.shell.unknowns import COLUMNS
+from magshell.shell.unknowns import COLUMNS, COMPONENTS
 
 
 class Converged:
@@ -94,18 +94,28 @@ class Converged:
     @property
     def body_motions(self) -> FloatArray:
         """Displacement and rotation vector of each rigid body (bodies, 2, 3), m and rad."""
-        bodies = slice(self.discretisation.rows.nodes, self.discretisation.rows.places)
+        bodies = self.discretisation.rows.bodies
         return np.stack([self.state.u[bodies], rotation.logarithm(self.state.q[bodies])], axis=1)
 
     @property
     def body_forces(self) -> FloatArray:
         """Force and moment that each rigid body exerts on the shell (bodies, 2, 3), N and N m."""
-        rows, d = self.discretisation.rows, self.discretisation
-        if rows.places == rows.nodes:
-            return np.zeros((0, 2, 3))
-        of_nodes = d.from_nodes(Instant(self.state, self.loading))
-        forces = d.to_global(self.assembly.residual - of_nodes)[rows.nodes : rows.places]
+        forces = self._exerted[self.discretisation.rows.bodies]
         return np.stack([forces[:, COLUMNS["u"]], forces[:, COLUMNS["omega"]]], axis=1)
+
+    @property
+    def jumps(self) -> FloatArray:
+        """Jump of each periodic motion, m, and the force with which the next cell pulls at it, N, (periodic, 2, 3)."""
+        rows = self.discretisation.rows.jumps
+        return np.stack([self.state.u[rows], self._exerted[rows, COLUMNS["u"]]], axis=1)
+
+    @property
+    def _exerted(self) -> FloatArray:
+        """Forces (rows, 11), global axes, that bodies and jumps exert on the shell."""
+        d = self.discretisation
+        if d.rows.places == d.rows.nodes:
+            return np.zeros((d.rows.places, COMPONENTS))
+        return d.to_global(self.assembly.residual - d.from_nodes(Instant(self.state, self.loading)))
 
     @cached_property
     def source_forces(self) -> FloatArray:

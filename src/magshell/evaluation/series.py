@@ -175,6 +175,16 @@ SERIES: dict[str, Series] = {
             lambda model: _of_bodies(model, "F", "T"),
             lambda converged: [number for force in converged.body_forces for number in force.ravel().tolist()],
         ),
+        Series(
+            "jumps of periodic cells",
+            "",
+            "Jump of the displacement from a cell to the next (`NAME.u1`, `u2`, `u3`, m), and the force with which the "
+            "next cell pulls (`NAME.F1`, `F2`, `F3`, N).",
+            lambda model: [
+                f"{one.name}.{letter}{i}" for one in model.shell.periodic for letter in ("u", "F") for i in (1, 2, 3)
+            ],
+            lambda converged: converged.jumps.ravel().tolist(),
+        ),
     )
 }
 """The series, by name, in the order of the files."""

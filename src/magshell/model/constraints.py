@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.model.places import Places
-from magshell.model.support import Condition, Support
+from magshell.model.support import Condition, Support, frame_about
 from magshell.model.supports import SymmetryPlane
 from magshell.multipliers import amplitudes
 from magshell.shell.unknowns import COLUMNS, COMPONENTS
@@ -75,10 +75,10 @@ def resolve(places: Places, supports: Supports, stages: int = 1) -> Constraints:
                     _check_carried(places, members, condition)
                 members = members[carries]
             value = condition.value * amplitudes(condition.history, stages, f"support on '{condition.group}'")
-            for node in members:
-                directions.setdefault((int(node), condition.field), []).append(
-                    (condition.direction, value, condition.group)
-                )
+            for place, direction in places.rooted(condition, members):
+                directions.setdefault((place, condition.field), []).append((direction, value, condition.group))
+    for place, field, direction in _on_axes(places):
+        directions.setdefault((place, field), []).append((direction, np.zeros(stages), "the axis of repetition"))
     for (node, field), wanted in directions.items():
         column = COLUMNS[field].start
         base, held = _orthonormal(places.words(node), field, wanted)
@@ -95,6 +95,16 @@ def resolve(places: Places, supports: Supports, stages: int = 1) -> Constraints:
             fixed[node, column : column + len(base)] = True
             values[:, node, column : column + len(base)] = held.T
     return Constraints(fixed, values, frame_of, np.array(frames).reshape(-1, 3, 3))
+
+
+def _on_axes(places: Places) -> Iterator[tuple[int, str, FloatArray]]:
+    """Place, field and direction of what vanishes at nodes on an axis of rotation that repeats the shell."""
+    if places.images is None:
+        return
+    for node, axis in zip(places.images.on_axis.tolist(), places.images.axes, strict=True):
+        for field in FRAME_OF_FIELD:
+            if places.carriers[field][node]:
+                yield from ((node, field, direction) for direction in frame_about(axis)[1:])
 
 
 def _off_bodies(places: Places, owner: IntArray, members: IntArray, support: Support, supports: Supports) -> IntArray:
@@ -123,7 +133,9 @@ def _check_carried(places: Places, members: IntArray, condition: Condition) -> N
     if carries.any() and not at_joints.size:
         return
     if members[0] >= len(places.mesh.points):
-        raise InputError(f"{where}: a rigid body has no '{field}', only u and omega")
+        body = places.carriers["omega"][members[0]]
+        carried = "a rigid body has no '{}', only u and omega" if body else "a jump has no '{}', only u"
+        raise InputError(f"{where}: {carried.format(field)}")
     if not places.carriers[field].any():
         raise InputError(f"{where}: no node of this shell carries '{field}'")
     if at_joints.size:

@@ -40,18 +40,19 @@ def _springs(shell: Shell, rows: Rows, hinge: Hinge) -> _HingeSprings:
 
 def _of_edge(shell: Shell, rows: Rows, edge: IntArray) -> Iterator[tuple[int, int, float, FloatArray]]:
     """Rows of two sides, their part of the edge's length, and the tangent."""
-    mesh = shell.mesh
+    mesh, root = shell.mesh, shell.images.root
+    elements = root[mesh.elements]
     chord = mesh.points[edge[1]] - mesh.points[edge[0]]
     length = float(np.linalg.norm(chord))
     shares = (1 / 6, 1 / 6, 2 / 3) if shell.element.rest_nodes == 8 else (0.5, 0.5)
-    owners = np.flatnonzero((np.isin(mesh.elements[:, :4], edge[:2])).sum(axis=1) >= 2)
-    owners = owners[np.isin(mesh.elements[owners], edge[2]).any(axis=1)]
+    owners = np.flatnonzero((np.isin(elements[:, :4], root[edge[:2]])).sum(axis=1) >= 2)
+    owners = owners[np.isin(elements[owners], root[edge[2]]).any(axis=1)]
     for node, share in zip(edge, shares, strict=False):
-        slots = np.argmax(mesh.elements[owners] == node, axis=1)
+        slots = np.argmax(elements[owners] == root[node], axis=1)
         sides = rows.source[rows.elements[owners, slots], OMEGA.start]
         for a, b in zip(sides[:-1].tolist(), sides[1:].tolist(), strict=True):
             if a != b:
-                yield a, b, share * length, chord / length
+                yield a, b, share * length, chord @ shell.images.rotation[node] / length
 
 
 @dataclass(frozen=True, eq=False)

@@ -44,6 +44,7 @@ def check_linkage(
     fields = {"u": u, "w": -cross_matrix(rows.normals) @ θ, "omega": θ}
     shared = np.flatnonzero(piece != piece[rows.source[:, U.start]])
     conditions = [(u[shared] - u[rows.source[shared, U.start]]).reshape(-1, u.shape[2])]
+    conditions += [rows.images.differences(motion).reshape(-1, u.shape[2]) for motion in (u, θ)]
     for field, number in FRAME_OF_FIELD.items():
         motion, frame = fields[field].copy(), constraints.frame_of[:, number]
         oblique = frame >= 0

@@ -123,7 +123,7 @@ class Model:
         put(self, "local_axis", _direction("local_axis", self.local_axis))
         put(self, "outputs", tuple(self.outputs))
         put(self, "rows", rows_of(self.shell, mirror_planes(self.supports, self.shell.rigid)))
-        places = Places(mesh, self.rows.carriers, tuple(self.shell.rigid))
+        places = Places(mesh, self.rows.carriers, tuple(self.shell.rigid), self.shell.periodic, self.shell.images)
         constraints = resolve(places, self.supports, len(self.stages))
         put(self, "constraints", self.rows.constraints(constraints))
         put(self, "named_supports", named_supports(self.shell, places, self.supports))

@@ -74,13 +74,21 @@ def named_supports(shell: Shell, places: Places, supports: Sequence[Support]) ->
     shares = _shares(list(held.values()))
     found = []
     for name, own, share in zip(by_name, by_name.values(), shares, strict=True):
-        nodes = np.unique(np.concatenate([places.named(support.group) for support in own]))
+        nodes = np.unique(np.concatenate([_roots(places, support.group) for support in own]))
         matrices = {field: np.zeros((len(nodes), 3, 3)) for field in FIELDS}
         for (node, field), matrix in share.items():
             matrices[field][np.searchsorted(nodes, node)] = matrix
         groups = list(dict.fromkeys(support.group for support in own))
         found.append(NamedSupport(name, nodes, _centroid(shell, places, groups), _point(name, own), matrices))
     return tuple(found)
+
+
+def _roots(places: Places, group: str) -> IntArray:
+    """Places of a group; of nodes that are images of others, these."""
+    members = places.named(group)
+    if places.images is None or members[0] >= len(places.images.root):
+        return members
+    return np.asarray(places.images.root[members])
 
 
 def _centroid(shell: Shell, places: Places, groups: Sequence[str]) -> FloatArray:
@@ -120,8 +128,8 @@ def _directions(places: Places, supports: Sequence[Support]) -> dict[tuple[int, 
             if condition.field not in FIELDS:
                 continue
             members = places.named(condition.group)
-            for node in members[places.carriers[condition.field][members]]:
-                found.setdefault((int(node), condition.field), []).append(condition.direction)
+            for place, direction in places.rooted(condition, members[places.carriers[condition.field][members]]):
+                found.setdefault((place, condition.field), []).append(direction)
     return {place: np.array(directions) for place, directions in found.items()}
 
 

@@ -1,8 +1,8 @@
-"""Places that supports hold: nodes of the mesh and, after them, rigid bodies, by the names of groups and bodies."""
+"""Places that supports hold: nodes of the mesh, rigid bodies, jumps between cells, by the names of all these."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -10,11 +10,14 @@ import numpy as np
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.errors import InputError, suggest
 from magshell.mesh import Mesh
+from magshell.model.images import Images
+from magshell.model.repeated import Periodic
 from magshell.model.rigid_body import RigidBody, members_of
+from magshell.model.support import Condition
 
 
 class Places(NamedTuple):
-    """Nodes and bodies.
+    """Nodes, bodies and jumps.
 
     Attributes
     ----------
@@ -22,21 +25,27 @@ class Places(NamedTuple):
     carriers : mapping of str to (places,) ndarray of bool
         Which of them carry the fields u, w, phi and omega.
     bodies : tuple of RigidBody
+    jumps : tuple of Periodic
+    images : Images, optional
+        None: no node is the image of another.
     """
 
     mesh: Mesh
     carriers: Mapping[str, AnyArray]
     bodies: tuple[RigidBody, ...] = ()
+    jumps: tuple[Periodic, ...] = ()
+    images: Images | None = None
 
     @property
     def number(self) -> int:
         """Number of places."""
-        return len(self.mesh.points) + len(self.bodies)
+        return len(self.mesh.points) + len(self.bodies) + len(self.jumps)
 
     @property
     def points(self) -> FloatArray:
-        """Positions (places, 3) of nodes and reference points, m."""
-        return np.concatenate([self.mesh.points, *(body.reference_point(self.mesh)[None] for body in self.bodies)])
+        """Positions (places, 3) of nodes and reference points, m; periods of jumps."""
+        bodies = [body.reference_point(self.mesh)[None] for body in self.bodies]
+        return np.concatenate([self.mesh.points, *bodies, *(jump.period(self.mesh)[None] for jump in self.jumps)])
 
     @property
     def owner(self) -> IntArray:
@@ -44,27 +53,55 @@ class Places(NamedTuple):
         owner = members_of(self.mesh, self.bodies)
         return np.where(owner >= 0, owner + len(self.mesh.points), -1)
 
+    @property
+    def _beyond(self) -> list[RigidBody | Periodic]:
+        """What has the places after the nodes."""
+        return [*self.bodies, *self.jumps]
+
     def is_body(self, name: str) -> bool:
-        """Whether a rigid body has this name."""
-        return any(body.name == name for body in self.bodies)
+        """Whether a rigid body or a jump has this name."""
+        return any(one.name == name for one in self._beyond)
 
     def named(self, name: str) -> IntArray:
-        """Place of the body of this name, or the nodes of the group.
+        """Place of the body or jump of this name, or the nodes of the group.
 
         Raises
         ------
         InputError
             There is neither.
         """
-        for number, body in enumerate(self.bodies):
-            if body.name == name:
+        for number, one in enumerate(self._beyond):
+            if one.name == name:
                 return np.array([len(self.mesh.points) + number])
-        if self.bodies and name not in self.mesh.groups:
-            names = [*self.mesh.groups, *(body.name for body in self.bodies)]
-            raise InputError(f"There is no group or rigid body '{name}'. {suggest(name, names)}")
+        if self._beyond and name not in self.mesh.groups:
+            names = [*self.mesh.groups, *(one.name for one in self._beyond)]
+            what = " or ".join(["group", *["rigid body"] * bool(self.bodies), *["jump"] * bool(self.jumps)])
+            raise InputError(f"There is no {what} '{name}'. {suggest(name, names)}")
         return self.mesh.nodes_of(name)
 
     def words(self, place: int) -> str:
         """A place in messages."""
         nodes = len(self.mesh.points)
-        return f"node {place}" if place < nodes else self.bodies[place - nodes].label
+        return f"node {place}" if place < nodes else self._beyond[place - nodes].label
+
+    def rooted(self, condition: Condition, members: IntArray) -> Iterator[tuple[int, FloatArray]]:
+        """Places and directions that a condition on some places holds: of images of others at their roots.
+
+        Raises
+        ------
+        InputError
+            u of a node that follows another with a jump.
+        """
+        nodes = len(self.mesh.points)
+        for place in members.tolist():
+            if self.images is None or place >= nodes or self.images.root[place] == place:
+                yield place, condition.direction
+                continue
+            root = int(self.images.root[place])
+            if condition.field == "u" and self.images.steps[place].any():
+                names = [one.name for one, steps in zip(self.jumps, self.images.steps[place], strict=True) if steps]
+                raise InputError(
+                    f"support on '{condition.group}': node {place} follows node {root} of another side of the cell, "
+                    f"with a jump; hold that node, and the jump by its name, {' and '.join(map(repr, names))}"
+                )
+            yield root, condition.direction @ self.images.rotation[place]

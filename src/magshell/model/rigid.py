@@ -10,6 +10,7 @@ from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.model.constraints import Constraints
 from magshell.model.elastic import Elastic
+from magshell.model.images import Images
 from magshell.model.places import Places
 from magshell.shell.state import State
 
@@ -20,19 +21,26 @@ def free_motions(
     nodes: IntArray,
     constraints: Constraints,
     springs: Sequence[Elastic] = (),
+    places: Places | None = None,
 ) -> FloatArray:
     """Basis (motions, 6) of the rigid motions of some nodes that no support or spring resists.
 
-    Columns: translation, then rotation about the nodes' centre (times their size, so that all have one unit).
+    Columns: translation, then rotation about the nodes' centre (times their size, so that all have one unit). With
+    `places`, a motion that is not the same in the neighbours of a repeated part is none, and jumps are among the nodes.
     """
-    centre = points[nodes].mean(axis=0)
-    size = float(np.ptp(points[nodes], axis=0).max())
+    jumps = np.array([], dtype=bool) if places is None else nodes >= places.number - len(places.jumps)
+    of_body = nodes if places is None else nodes[~jumps]
+    centre = points[of_body].mean(axis=0)
+    size = float(np.ptp(points[of_body], axis=0).max())
     arm = (points[nodes] - centre) / size
     rotation = np.eye(3)
     # motion of u, w and ω under three translations and three rotations: (nodes, 3, 6)
     u = np.concatenate([np.broadcast_to(rotation, (len(nodes), 3, 3)), -_cross(arm)], axis=2)
     w = np.concatenate([np.zeros((len(nodes), 3, 3)), -_cross(normals[nodes])], axis=2)
     ω = np.concatenate([np.zeros((len(nodes), 3, 3)), np.broadcast_to(rotation, (len(nodes), 3, 3))], axis=2)
+    if jumps.any():
+        u[jumps], ω[jumps] = 0.0, 0.0
+        u[jumps, :, 3:] = -_cross(points[nodes[jumps]] / size)
     rows = []
     for field, (motion, column) in enumerate(((u, 0), (w, 3), (ω, 7))):
         frame = constraints.frame_of[nodes, field]
@@ -40,12 +48,25 @@ def free_motions(
         oblique = frame >= 0
         turned[oblique] = constraints.frames[frame[oblique]] @ motion[oblique]
         rows.append(turned[constraints.fixed[nodes, column : column + 3]])
+    if places is not None and places.images is not None:
+        rows += [_unlike(places.images, nodes, motion) for motion in (w, ω)]
+        rows += [_unlike(places.images, nodes, u, u[jumps])]
     matrix = np.concatenate([*rows, np.zeros((6, 6))])
     resisted = matrix.T @ matrix
     for spring in springs:
         resisted = resisted + _resisted(spring, nodes, {"u": u, "w": w, "omega": ω})
     _, singular, basis = np.linalg.svd(resisted)
     return np.asarray(basis[singular < 1e-12 * max(float(singular[0]), 1.0)])
+
+
+def _unlike(images: Images, nodes: IntArray, motion: FloatArray, jumps: FloatArray | None = None) -> FloatArray:
+    """What a motion (nodes, 3, 6) of some nodes, with jumps (k, 3, 6), does not take from roots to images, (n, 6)."""
+    found = np.intersect1d(images.found, nodes)
+    at, root = np.searchsorted(nodes, found), np.searchsorted(nodes, images.root[found])
+    unlike = motion[at] - images.rotation[found] @ motion[root]
+    if jumps is not None:
+        unlike = unlike - np.einsum("nk,kia->nia", images.steps[found], jumps)
+    return np.asarray(unlike.reshape(-1, 6))
 
 
 def _resisted(spring: Elastic, nodes: IntArray, motions: Mapping[str, FloatArray]) -> FloatArray:
@@ -80,12 +101,13 @@ def check_supported(
     `normals` are those of the places (places, 3), zero for rigid bodies.
     """
     mesh, owner, points = places.mesh, places.owner, places.points
+    jumps = np.arange(places.number - len(places.jumps), places.number)
     parts = _parts(places, owner)
     for number, elements in enumerate(parts):
         nodes = np.unique(mesh.elements[elements])
         bodies = owner[nodes]
-        nodes = np.append(nodes, np.unique(bodies[bodies >= 0]))
-        motions = free_motions(points, normals, nodes, constraints, springs)
+        nodes = np.concatenate([nodes, np.unique(bodies[bodies >= 0]), jumps])
+        motions = free_motions(points, normals, nodes, constraints, springs, places)
         if len(motions) == 0:
             continue
         which = "the body" if len(parts) == 1 else f"part {number + 1} of {len(parts)} (element {elements[0]} …)"
@@ -100,14 +122,16 @@ def check_supported(
 
 
 def _parts(places: Places, owner: IntArray) -> list[IntArray]:
-    """Elements of each part of the mesh; parts that a rigid body joins are one."""
+    """Elements of each part of the mesh; parts that a rigid body or a repetition joins are one."""
     parts = places.mesh.parts
-    if not places.bodies:
+    images = places.images
+    if not places.bodies and (images is None or not images.found.size):
         return parts
-    bodies = [np.unique(owner[np.unique(places.mesh.elements[elements])]) for elements in parts]
+    links = [owner] if images is None else [owner, np.where(images.touched, images.root, -1)]
     joined: list[tuple[set[int], list[IntArray]]] = []
-    for elements, own in zip(parts, bodies, strict=True):
-        of, members = set(own[own >= 0].tolist()), [elements]
+    for elements in parts:
+        nodes = np.unique(places.mesh.elements[elements])
+        of, members = {int(one) for link in links for one in link[nodes] if one >= 0}, [elements]
         for other in [one for one in joined if one[0] & of]:
             joined.remove(other)
             of, members = of | other[0], other[1] + members

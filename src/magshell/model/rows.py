@@ -1,4 +1,4 @@
-"""Rows of the nodal arrays: the nodes of the mesh, the rigid bodies, and one more for each further sheet or section.
+"""Rows of the nodal arrays: nodes of the mesh, rigid bodies, jumps, and one more for each further sheet or section.
 
 At a joint several sheets meet, each with a director of its own; at a border the thickness, layers, material or offset
 change. There elements have rows of their own. Rows share unknowns with others, and depend on them:
@@ -7,6 +7,8 @@ change. There elements have rows of their own. Rows share unknowns with others, 
 * Sections of one sheet share the director; the further ones have a stretch s of it.
 * At a joint, where the piece has several sheets, the micro-rotation R carries the directors, d = (1 + s) R D.
 * On a rigid body u and R are those of its reference point, u = u_r + (R - I)(X - X_r), d = R D.
+* A row of a node that is the image of another (`images.py`) has all its unknowns from there, in a turned frame; from
+  one cell to the next u has a jump more, with a row of its own for all nodes of an edge.
 
 The thickness stretch φ is each row's own.
 """
@@ -19,10 +21,11 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray, IntArray
-from magshell.errors import InputError
 from magshell.model.constraints import FRAME_OF_FIELD, Constraints
+from magshell.model.images import NO_IMAGES, Beyond, ImageRows, Images
 from magshell.model.reflection import in_mirror_planes
-from magshell.model.rigid_body import RigidBody, members_of
+from magshell.model.rigid_body import members_of
+from magshell.model.row_checks import check_hinges, check_images, check_micro_rotation
 from magshell.model.sheets import Sheets, sheets_of
 from magshell.model.shell import Shell
 from magshell.model.supports import SymmetryPlane
@@ -38,14 +41,14 @@ Columns = TypeVar("Columns", bound=AnyArray)
 
 
 class Rows(NamedTuple):
-    """Who has which row. The nodes of the mesh come first, then the rigid bodies, then the further rows of nodes.
+    """Who has which row. The nodes of the mesh come first, then rigid bodies, jumps, and the further rows of nodes.
 
     Attributes
     ----------
     nodes, places : int
-        Number of mesh nodes, and of mesh nodes and bodies.
+        Number of mesh nodes, and of mesh nodes, bodies and jumps.
     of : ndarray, shape (rows,)
-        Mesh node or body; that of the first rows is their own number.
+        Mesh node, body or jump; that of the first rows is their own number.
     elements : ndarray, shape (elements, 8)
         Rows of the elements.
     source : ndarray, shape (rows, 11)
@@ -59,13 +62,16 @@ class Rows(NamedTuple):
     body : ndarray, shape (rows,)
         Row of the rigid body that moves this one; -1 for none.
     points, normals : ndarray, shape (rows, 3)
-        Undeformed position, m, and unit normal of the sheet; zero for bodies.
+        Undeformed position, m, and unit normal of the sheet; zero for bodies. The point of a jump is the period.
     carriers : mapping of str to (places,) ndarray of bool
         Which places have the fields u, w, phi and omega.
     joined : ndarray, shape (joints,)
         Mesh nodes at which a rotation carries the directors of several sheets.
     hinged : ndarray, shape (n,)
         Mesh nodes at which pieces share u only.
+    jumps : ndarray, shape (periodic,)
+        Rows of the jumps from cell to cell.
+    images : ImageRows
     """
 
     nodes: int
@@ -83,11 +89,18 @@ class Rows(NamedTuple):
     carriers: Mapping[str, AnyArray]
     joined: IntArray
     hinged: IntArray
+    jumps: IntArray
+    images: ImageRows
 
     @property
     def plain(self) -> bool:
         """Whether every row has all its unknowns for itself."""
-        return len(self.of) == self.nodes
+        return len(self.of) == self.nodes and not self.images.rows.size
+
+    @property
+    def bodies(self) -> slice:
+        """Rows of the rigid bodies."""
+        return slice(self.nodes, self.places - len(self.jumps))
 
     @property
     def place(self) -> IntArray:
@@ -97,7 +110,10 @@ class Rows(NamedTuple):
     def words(self, row: int) -> str:
         """The node or the rigid body of a row in messages."""
         place = int(self.of[row])
-        return f"node {place}" if place < self.nodes else f"rigid body {place - self.nodes + 1}"
+        if place < self.nodes:
+            return f"node {place}"
+        body = place - self.nodes + 1
+        return f"rigid body {body}" if place < self.bodies.stop else f"jump {place - self.bodies.stop + 1}"
 
     def shared(self, nodal: Columns) -> Columns:
         """Nodal columns (rows, 11) whose shared ones are those of their source."""
@@ -105,12 +121,24 @@ class Rows(NamedTuple):
             nodal[:] = nodal[self.source, np.arange(COMPONENTS)]
         return nodal
 
+    def jumped(self, nodal: FloatArray) -> FloatArray:
+        """Nodal columns (rows, 11) whose u beyond a jump is that of its root and the jump."""
+        rows, roots, steps = self.images.beyond
+        if rows.size:
+            nodal[rows, U] = nodal[roots, U] + steps @ nodal[self.jumps, U]
+        return nodal
+
     def folded(self, forces: FloatArray) -> FloatArray:
-        """Forces (rows, 11) summed at those that share their unknowns: the transpose of `shared`."""
+        """Forces (rows, 11) summed at those that share their unknowns: the transpose of `shared` and `jumped`."""
         if self.plain:
             return forces
         total = np.zeros_like(forces)
         np.add.at(total, (self.source, np.arange(COMPONENTS)), forces)
+        rows, roots, steps = self.images.beyond
+        if rows.size:
+            np.add.at(total[:, U], roots, total[rows, U])
+            total[self.jumps, U] += steps.T @ total[rows, U]
+            total[rows, U] = 0.0
         return total
 
     def constraints(self, constraints: Constraints) -> Constraints:
@@ -122,9 +150,11 @@ class Rows(NamedTuple):
             [constraints.frame_of[place[:, COLUMNS[field].start], n] for field, n in FRAME_OF_FIELD.items()], axis=1
         )
         fixed, values = constraints.fixed[place, columns].copy(), constraints.values[:, place, columns].copy()
-        clamped = (self.kind == TURNED) & fixed[:, OMEGA].all(axis=1) & constraints.fixed[self.of, W].all(axis=1)
+        own = place[:, PHI.start]
+        clamped = (self.kind == TURNED) & fixed[:, OMEGA].all(axis=1) & constraints.fixed[own, W].all(axis=1)
         fixed[clamped, S] = True
-        return constraints._replace(fixed=fixed, values=values, frame_of=frame_of)
+        frames = self.images.turn_frames(frame_of, constraints.frames)
+        return constraints._replace(fixed=fixed, values=values, frame_of=frame_of, frames=frames)
 
 
 class _Table:
@@ -150,8 +180,9 @@ def rows_of(shell: Shell, planes: Sequence[SymmetryPlane] = ()) -> Rows:
     InputError
         Sheets meet in a shell without micro-rotation; a hinge or a rigid body does not fit the mesh.
     """
-    mesh, nodes, bodies = shell.mesh, len(shell.mesh.points), shell.rigid
-    places, sheets = nodes + len(bodies), sheets_of(mesh, shell.hinges)
+    mesh, nodes, bodies, images = shell.mesh, len(shell.mesh.points), shell.rigid, shell.images
+    jumps = nodes + len(bodies) + np.arange(len(shell.periodic))
+    places, sheets = nodes + len(bodies) + len(jumps), sheets_of(mesh, shell.hinges, images)
     owner = members_of(mesh, bodies)
     elements, table = _numbered(shell, sheets, places)
     of, piece, sheet = (np.array(one) for one in (table.of, table.piece, table.sheet))
@@ -163,22 +194,29 @@ def rows_of(shell: Shell, planes: Sequence[SymmetryPlane] = ()) -> Rows:
     inside = of < nodes
     body[inside] = np.where(owner[of[inside]] >= 0, nodes + owner[of[inside]], -1)
     rigid = body >= 0
-    _check_hinges(shell, owner)
-    _check_micro_rotation(shell, of, turned, rigid, bodies)
+    check_hinges(shell, owner)
+    check_images(shell, owner)
+    check_micro_rotation(shell, of, turned | rigid)
     rows = np.arange(len(of))
     source = np.repeat(rows[:, None], COMPONENTS, axis=1)
     source[:, U] = np.where(rigid, body, of)[:, None]
     source[:, OMEGA] = np.where(rigid, body, piece)[:, None]
     source[:, W] = np.where(turned | rigid, rows, sheet)[:, None]
     kind = np.where(rigid, RIGID, np.where(turned, TURNED, np.where(rows != sheet, STRETCHED, FREE)))
-    points = np.concatenate([mesh.points, *(body.reference_point(mesh)[None] for body in bodies)])[of]
-    return Rows(
+    points = np.concatenate(
+        [
+            mesh.points,
+            *(one.reference_point(mesh)[None] for one in bodies),
+            *(one.period(mesh)[None] for one in shell.periodic),
+        ]
+    )[of]
+    independent = Rows(
         nodes=nodes,
         places=places,
         of=of,
         elements=elements,
         source=source,
-        carried=_carried(shell, elements, of, source, kind),
+        carried=_carried(shell, elements, of, source, kind, jumps),
         kind=kind,
         piece=piece,
         sheet=sheet,
@@ -188,7 +226,54 @@ def rows_of(shell: Shell, planes: Sequence[SymmetryPlane] = ()) -> Rows:
         carriers=_carriers(shell, kind, places),
         joined=np.unique(of[turned & inside]),
         hinged=np.unique(of[(piece != of) & inside]),
+        jumps=jumps,
+        images=NO_IMAGES,
     )
+    return _with_images(independent, images, mesh.elements) if images.found.size else independent
+
+
+def _with_images(rows: Rows, images: Images, nodes: IntArray) -> Rows:
+    """Rows for nodes that are images, of each row there that elements have; `nodes` (elements, 8) are the elements'."""
+    count = len(images.root)
+    corners = np.flatnonzero(images.root[nodes] != nodes)
+    pairs = np.column_stack([nodes.ravel()[corners], rows.elements.ravel()[corners]])
+    pairs, which = np.unique(pairs, axis=0, return_inverse=True)
+    first = np.append(True, np.diff(pairs[:, 0]) > 0)
+    own = np.where(first, pairs[:, 0], len(rows.of) + np.cumsum(~first) - 1)
+    roots, elements = pairs[:, 1], rows.elements.copy()
+    elements.ravel()[corners] = own[which.ravel()]
+    turns = images.rotation[pairs[:, 0]]
+    source = rows.source[roots]
+    beyond = first & images.steps[pairs[:, 0]].any(axis=1)
+    apart = images.steps[pairs[:, 0]].any(axis=1)
+    source[apart, U] = pairs[apart, :1]
+    extended: dict[str, AnyArray] = {
+        "of": pairs[:, 0],
+        "source": source,
+        "carried": np.zeros((len(own), COMPONENTS), dtype=bool),
+        "kind": rows.kind[roots],
+        "piece": _within(own, pairs[:, 0], rows.piece[roots]),
+        "sheet": _within(own, pairs[:, 0], rows.sheet[roots]),
+        "body": rows.body[roots],
+        "points": rows.points[pairs[:, 0]],
+        "normals": np.einsum("nij,nj->ni", turns, rows.normals[roots]),
+    }
+    made: dict[str, Any] = {}
+    for name, values in extended.items():
+        there = getattr(rows, name)
+        made[name] = np.concatenate([there, np.zeros((np.sum(~first), *there.shape[1:]), dtype=there.dtype)])
+        made[name][own] = values
+    carriers = {field: carries.copy() for field, carries in rows.carriers.items()}
+    for carries in carriers.values():
+        carries[:count] = carries[images.root]
+    jumping = Beyond(own[beyond], rows.source[roots[beyond], U.start], images.steps[pairs[beyond, 0]])
+    return rows._replace(elements=elements, carriers=carriers, images=ImageRows(own, roots, turns, jumping), **made)
+
+
+def _within(own: IntArray, node: IntArray, label: IntArray) -> IntArray:
+    """First row of each label at each node."""
+    _, first, which = np.unique(np.column_stack([node, label]), axis=0, return_index=True, return_inverse=True)
+    return np.asarray(own[first[which.ravel()]])
 
 
 def _sprung(sheets: Sheets, of: IntArray, nodes: int) -> AnyArray:
@@ -196,57 +281,17 @@ def _sprung(sheets: Sheets, of: IntArray, nodes: int) -> AnyArray:
     return np.append(sheets.sprung, False)[np.minimum(of, nodes)]
 
 
-def _check_hinges(shell: Shell, owner: IntArray) -> None:
-    """Refuse hinges on rigid bodies, where nothing turns."""
-    for hinge in shell.hinges:
-        edges = hinge.edges(shell.mesh)
-        rigid = np.flatnonzero(np.all(owner[edges] >= 0, axis=1))
-        if rigid.size:
-            one, other = edges[rigid[0], :2]
-            raise InputError(
-                f"{hinge.label}: the edge between nodes {one} and {other} belongs to "
-                f"{shell.rigid[owner[one]].label}, in which nothing turns; leave these nodes out of the body"
-            )
-
-
-def _check_micro_rotation(
-    shell: Shell, of: IntArray, turned: AnyArray, rigid: AnyArray, bodies: Sequence[RigidBody]
-) -> None:
-    if shell.micro_rotation:
-        return
-    if bodies:
-        raise InputError(
-            f"{bodies[0].label}: micro_rotation is False, and a rigid body carries the shell by its micro-rotation; "
-            "leave micro_rotation out"
-        )
-    if sprung := [hinge for hinge in shell.hinges if hinge.stiffness]:
-        raise InputError(
-            f"{sprung[0].label}: micro_rotation is False, and the spring acts on the micro-rotations of both sides; "
-            "leave micro_rotation out, or stiffness"
-        )
-    if turned.any():
-        node = int(of[np.argmax(turned)])
-        raise InputError(
-            f"shell: sheets meet at an angle at node {node}, {_at(shell.mesh.points[node])}, and micro_rotation is "
-            "False; a joint carries its sheets by the micro-rotation, leave micro_rotation out"
-        )
-
-
-def _at(point: FloatArray) -> str:
-    return "({}) mm".format(", ".join(f"{1e3 * x:.4g}" for x in point))
-
-
 def _numbered(shell: Shell, sheets: Sheets, places: int) -> tuple[IntArray, _Table]:
     """Rows of the elements, in a table of all rows."""
-    mesh, rest = shell.mesh, shell.element.rest_nodes
-    elements, table, count = mesh.elements.copy(), _Table(places), len(mesh.points)
+    rest, count = shell.element.rest_nodes, len(shell.mesh.points)
+    elements, table = shell.images.root[shell.mesh.elements], _Table(places)
     kind, measures = _sections(shell)
-    section = np.full(mesh.elements.shape, -1)
+    section = np.full(elements.shape, -1)
     section[:, :rest] = np.arange(len(elements) * rest).reshape(-1, rest)
-    corners = mesh.elements.ravel()
+    corners = elements.flatten()
     special = np.zeros(count, dtype=bool)
     special[sheets.nodes] = True
-    special[_differing(mesh.elements[:, :rest].ravel(), kind, measures, count)] = True
+    special[_differing(elements[:, :rest].ravel(), kind, measures, count)] = True
     order = np.flatnonzero(special[corners])
     order = order[np.argsort(corners[order], kind="stable")]
     for group in np.split(order, np.flatnonzero(np.diff(corners[order])) + 1) if order.size else ():
@@ -301,13 +346,17 @@ def _same(kind: IntArray, measures: FloatArray, one: Any, other: Any) -> Any:
     return (kind[one] == kind[other]) & near
 
 
-def _carried(shell: Shell, elements: IntArray, of: IntArray, source: IntArray, kind: IntArray) -> AnyArray:
-    nodes = len(shell.mesh.points)
+def _carried(
+    shell: Shell, elements: IntArray, of: IntArray, source: IntArray, kind: IntArray, jumps: IntArray
+) -> AnyArray:
+    nodes, images = len(shell.mesh.points), shell.images
     at_node = of < nodes
     carried = np.zeros((len(of), COMPONENTS), dtype=bool)
     for field, carries in shell.carriers.items():
         carried[at_node, COLUMNS[field]] = carries[of[at_node], None]
+    carried[images.found] = False
     carried[~at_node, U] = carried[~at_node, OMEGA] = True
+    carried[jumps, OMEGA] = False
     carried[:, S] = ((kind == STRETCHED) | (kind == TURNED))[:, None] & carried[:, W].any(axis=1, keepdims=True)
     carried[kind >= TURNED, W] = False
     carried &= source == np.arange(len(of))[:, None]
@@ -321,9 +370,11 @@ def _carried(shell: Shell, elements: IntArray, of: IntArray, source: IntArray, k
 
 def _carriers(shell: Shell, kind: IntArray, places: int) -> dict[str, AnyArray]:
     """Fields of the places: at joints and on rigid bodies the directors follow the micro-rotation."""
-    bodies = places - len(shell.mesh.points)
-    own = {"u": True, "w": False, "phi": False, "omega": True}
-    carriers = {field: np.append(carries, np.full(bodies, own[field])) for field, carries in shell.carriers.items()}
+    bodies, jumps = len(shell.rigid), len(shell.periodic)
+    own = {"u": (True, True), "w": (False, False), "phi": (False, False), "omega": (True, False)}
+    carriers = {
+        field: np.append(carries, np.repeat(own[field], (bodies, jumps))) for field, carries in shell.carriers.items()
+    }
     carriers["w"] &= kind[:places] < TURNED
     return carriers
 
@@ -332,8 +383,12 @@ def _normals(
     shell: Shell, elements: IntArray, of: IntArray, sheet: IntArray, planes: Sequence[SymmetryPlane]
 ) -> FloatArray:
     """Unit normals (rows, 3), averaged over the elements of a sheet."""
-    total = np.zeros((len(of), 3))
-    np.add.at(total, sheet[elements].ravel(), corner_normals(shell.mesh.points, shell.mesh.elements).reshape(-1, 3))
+    total, mesh, images = np.zeros((len(of), 3)), shell.mesh, shell.images
+    each = images.back(corner_normals(mesh.points, mesh.elements), mesh.elements)
+    np.add.at(total, sheet[elements].ravel(), each.reshape(-1, 3))
+    for node, axis in zip(images.on_axis, images.axes, strict=True):
+        at = of == node
+        total[at] = (total[at] @ axis)[:, None] * axis
     length = np.linalg.norm(total, axis=1, keepdims=True)
     normals = np.divide(total, length, out=np.zeros_like(total), where=length > 0.0)[sheet]
     return in_mirror_planes(normals, [(np.isin(of, shell.nodes_of(p.group)), p.unit_normal) for p in planes])

@@ -15,8 +15,9 @@ import numpy as np
 from magshell.arrays import AnyArray, IntArray
 from magshell.errors import InputError
 from magshell.mesh import Mesh
-from magshell.mesh.edges import SIDES, edge_keys, find_edges
+from magshell.mesh.edges import SIDES, Edges, edge_keys, find_edges
 from magshell.model.hinge import Hinge
+from magshell.model.images import Images
 from magshell.shell.normals import corner_normals
 from magshell.shell.triangle import REPEATED
 
@@ -43,16 +44,16 @@ class Sheets(NamedTuple):
     sprung: AnyArray
 
 
-def sheets_of(mesh: Mesh, hinges: Sequence[Hinge]) -> Sheets:
-    """The sheets of a mesh.
+def sheets_of(mesh: Mesh, hinges: Sequence[Hinge], images: Images) -> Sheets:
+    """The sheets of a mesh; what meets at nodes that are images of others does so at their roots.
 
     Raises
     ------
     InputError
         A hinge is on no group of edges, or on an edge that fewer than two elements share.
     """
-    elements, count = mesh.elements, len(mesh.points)
-    normals = corner_normals(mesh.points, elements)
+    elements, count = images.root[mesh.elements], len(mesh.points)
+    normals = images.back(corner_normals(mesh.points, mesh.elements), mesh.elements)
     there = np.any(normals, axis=2)
     first = np.empty((count, 3))
     first[elements[there][::-1]] = normals[there][::-1]
@@ -62,7 +63,7 @@ def sheets_of(mesh: Mesh, hinges: Sequence[Hinge]) -> Sheets:
     edges = find_edges(elements)
     hinged, sprung = np.zeros(len(edges.first_side), dtype=bool), np.zeros(count, dtype=bool)
     for hinge in hinges:
-        numbers = _edges_of(mesh, hinge, edges.sides[edges.first_side], edges.sharing)
+        numbers = _edges_of(hinge, images.root[hinge.edges(mesh)], edges, count)
         if hinged[numbers].any():
             one, other = edges.sides[edges.first_side[numbers[np.argmax(hinged[numbers])]], :2]
             raise InputError(f"{hinge.label}: the edge between nodes {one} and {other} is of another hinge too")
@@ -89,14 +90,13 @@ def sheets_of(mesh: Mesh, hinges: Sequence[Hinge]) -> Sheets:
     return Sheets(np.flatnonzero(special), piece, sheet, sprung)
 
 
-def _edges_of(mesh: Mesh, hinge: Hinge, edges: IntArray, sharing: IntArray) -> IntArray:
+def _edges_of(hinge: Hinge, wanted: IntArray, edges: Edges, count: int) -> IntArray:
     """Numbers of the edges of a hinge."""
-    count = len(mesh.points)
-    keys = edge_keys(edges, count)
-    numbers = np.searchsorted(keys, edge_keys(hinge.edges(mesh), count))
-    free = np.flatnonzero(sharing[numbers] < 2)
+    keys = edge_keys(edges.sides[edges.first_side], count)
+    numbers = np.searchsorted(keys, edge_keys(wanted, count))
+    free = np.flatnonzero(edges.sharing[numbers] < 2)
     if free.size:
-        one, other = hinge.edges(mesh)[free[0], :2]
+        one, other = wanted[free[0], :2]
         raise InputError(
             f"{hinge.label}: the edge between nodes {one} and {other} is a free edge of the shell; a hinge joins two "
             "or more elements"

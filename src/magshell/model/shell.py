@@ -16,9 +16,11 @@ from magshell.materials import completed
 from magshell.mesh import Mesh
 from magshell.model.checked import checked_material, positive
 from magshell.model.hinge import Hinge
+from magshell.model.images import Images, images_of
 from magshell.model.overall import overall_remanence
 from magshell.model.parts import Draft, Heights, Part, completed_drafts, drafts_of, heights_of, parts_of
 from magshell.model.region import NO_REMANENCE, Layer, Region
+from magshell.model.repeated import Periodic, Repeated
 from magshell.model.rigid_body import RigidBody
 from magshell.model.thickness import Thickness
 from magshell.shell.elements import ELEMENTS, QUADRATIC
@@ -66,6 +68,8 @@ class Shell:
         Edges along which the shell may turn freely, or against a spring.
     rigid : sequence of RigidBody, optional
         Groups that move as rigid bodies.
+    repeated : sequence of Cyclic or Periodic, optional
+        Motions that take the shell to its neighbours in a structure of many alike.
 
     Raises
     ------
@@ -88,6 +92,7 @@ class Shell:
     levels: int = 2
     hinges: Sequence[Hinge] = ()
     rigid: Sequence[RigidBody] = ()
+    repeated: Sequence[Repeated] = ()
     _drafts: list[Draft] = dataclasses.field(init=False, repr=False)
     _heights: list[Heights] = dataclasses.field(init=False, repr=False)
 
@@ -97,6 +102,7 @@ class Shell:
         put(self, "layers", tuple(self.layers))
         put(self, "hinges", tuple(self.hinges))
         put(self, "rigid", tuple(self.rigid))
+        put(self, "repeated", tuple(self.repeated))
         if self.density is not None:
             put(self, "density", positive("shell: density", self.density, "kg/m^3"))
         if self.thickness is not None and not callable(self.thickness):
@@ -186,22 +192,44 @@ class Shell:
             faces[draft.elements] -= height.offset_at_nodes[..., None]
         return faces
 
+    @cached_property
+    def images(self) -> Images:
+        """Nodes that are images of others.
+
+        Raises
+        ------
+        InputError
+            A repetition does not fit the mesh.
+        """
+        return images_of(self.mesh, self.repeated)
+
+    @property
+    def periodic(self) -> tuple[Periodic, ...]:
+        """Those of the repetitions that have a jump of the displacement."""
+        return tuple(one for one in self.repeated if isinstance(one, Periodic))
+
     def body_row(self, name: str | None) -> int | None:
         """Row of the nodal arrays of the rigid body of this name; None: there is none."""
         names = [body.name for body in self.rigid]
         return len(self.mesh.points) + names.index(name) if name in names else None
 
+    def jump_row(self, name: str | None) -> int | None:
+        """Row of the nodal arrays of the jump of this name; None: there is none."""
+        names = [one.name for one in self.periodic]
+        return len(self.mesh.points) + len(self.rigid) + names.index(name) if name in names else None
+
     def nodes_of(self, name: str) -> IntArray:
-        """Nodes of a group, or those that belong to a rigid body.
+        """Nodes of a group, those that belong to a rigid body, or those beyond a jump.
 
         Raises
         ------
         InputError
-            There is neither.
+            There is none of this name.
         """
-        groups = {body.name: body.group for body in self.rigid}
+        groups = {body.name: body.group for body in self.rigid} | {one.name: one.image for one in self.periodic}
         if name not in groups and name not in self.mesh.groups and groups:
-            raise InputError(f"There is no group or rigid body '{name}'. {suggest(name, [*self.mesh.groups, *groups])}")
+            what = " or ".join(["group", *["rigid body"] * bool(self.rigid), *["jump"] * bool(self.periodic)])
+            raise InputError(f"There is no {what} '{name}'. {suggest(name, [*self.mesh.groups, *groups])}")
         return self.mesh.nodes_of(groups.get(name, name))
 
     def mean_of(self, parameter: str) -> FloatArray:

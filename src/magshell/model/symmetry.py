@@ -12,6 +12,7 @@ from magshell.arrays import FloatArray, IntArray
 from magshell.magnetics.fields import Field, UniformField
 from magshell.mesh import Mesh
 from magshell.mesh.geometry import COINCIDENT
+from magshell.model import repetition
 from magshell.model.course import Course
 from magshell.model.loads import Load
 from magshell.model.reflection import angle_to_plane, in_plane, is_normal
@@ -74,12 +75,12 @@ def remanence_sign(model: Mirrored, plane: Plane) -> int | None:
 
 
 def broken(model: Mirrored) -> list[str]:
-    """What breaks the model's mirror planes, in sentences: the plane, what breaks it and what would be right."""
+    """What breaks the model's mirror planes and repetitions, in sentences: what it is, and what would be right."""
     found = []
     for plane in planes(model):
         faults = (*_of_place(model.shell.mesh, plane), *_of_field(model, plane), *_of_loads(model, plane))
         found += [f"symmetry '{plane.group}': {fault}" for fault in faults]
-    return found
+    return found + repetition.broken(model)
 
 
 def _of_place(mesh: Mesh, plane: Plane) -> Iterator[str]:

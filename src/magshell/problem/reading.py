@@ -249,6 +249,7 @@ def _kinds(place: str) -> list[str]:
     from magshell.magnetics.remanence import REMANENCES
     from magshell.materials import MATERIALS, names_of
     from magshell.model.loads import LOADS
+    from magshell.model.repeated import REPEATED
     from magshell.model.springs import SPRINGS
     from magshell.model.supports import SUPPORTS
     from magshell.problem import schema
@@ -263,6 +264,7 @@ def _kinds(place: str) -> list[str]:
         "remanence": REMANENCES,
         "supports": SUPPORTS,
         "springs": SPRINGS,
+        "repeated": REPEATED,
         "loads": LOADS,
         "magnets": MAGNETS,
         "coils": COILS,

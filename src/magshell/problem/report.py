@@ -18,6 +18,7 @@ from magshell.model import symmetry
 from magshell.model.doubts.figures import Figures, Whole, figures_of
 from magshell.model.doubts.loads import strength
 from magshell.model.elastic import ElasticSupport
+from magshell.model.repeated import Periodic
 from magshell.model.support import Support
 from magshell.model.supports import SymmetryPlane
 from magshell.model.words import offset_of, span
@@ -76,6 +77,7 @@ def describe(problem: Problem) -> Report:
             **({"Supports": list(_supports(problem, figures))} if problem.model.supports else {}),
             **({"Springs": list(_springs(problem, figures))} if problem.model.springs else {}),
             **({"Rigid bodies": list(body_report.lines(problem.model))} if problem.model.shell.rigid else {}),
+            **({"Repeated": list(_repeated(problem))} if problem.model.shell.repeated else {}),
             **({"Stages": list(_stages(problem))} if len(problem.model.stages) > 1 or problem.file.stages else {}),
             "Probes": list(_probes(problem, figures.extent)),
             **({"Results": list(_results(problem))} if problem.file.results.model_fields_set else {}),
@@ -90,6 +92,16 @@ def problem_html(problem: Problem) -> str:
     from magshell.output.notebook import model_html
 
     return model_html(problem.model, problem.title, describe(problem).warnings)
+
+
+def _repeated(problem: Problem) -> Iterator[tuple[str, str]]:
+    mesh = problem.model.shell.mesh
+    for one in problem.model.shell.repeated:
+        period = ""
+        if isinstance(one, Periodic):
+            length = show(float(np.linalg.norm(one.period(mesh))), LENGTH)
+            period = f" at {length}, jump of the displacement '{one.name}'"
+        yield one.kind, f"{one.group} to {one.image}, {one.words}{period}, {counted(len(one.nodes(mesh)[0]), 'pair')}"
 
 
 def _mesh(problem: Problem, extent: float) -> Iterator[tuple[str, str]]:

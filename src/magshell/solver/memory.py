@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse as sp
 
-from magshell.equations.numbering import place_graph
+from magshell.equations.numbering import elimination_order, place_graph
 from magshell.linalg import nested_dissection
 from magshell.linalg.multifrontal.fronts import fronts_of
 from magshell.model.model import Model
@@ -44,9 +44,8 @@ class Need(NamedTuple):
 def need_of(model: Model, linear_solver: str = "multifrontal") -> Need:
     """What a solve of a model will take."""
     rows, elements = model.rows, len(model.shell.mesh.elements)
-    graph = place_graph(rows, [rows.elements])
-    nodes = sp.csr_array(graph[: rows.nodes, : rows.nodes])
-    order = np.append(nested_dissection(nodes), np.arange(rows.nodes, rows.places))
+    graph = place_graph(rows, [rows.elements], joined=True)
+    order = elimination_order(rows, [rows.elements], nested_dissection)
     free = (rows.carried & ~model.constraints.fixed).sum(axis=1)
     unknowns = np.bincount(rows.of, free, minlength=rows.places).astype(np.int64)
     order = order[unknowns[order] > 0]

@@ -69,7 +69,10 @@ class Force(TotalLoad):
                 raise InputError(
                     "a follower turns with the micro-rotation, which this shell does not have; leave follower out"
                 )
-            body = shell.body_row(self.group)
+            body, jump = shell.body_row(self.group), shell.jump_row(self.group)
+            if self.follower and jump is not None:
+                raise InputError("a jump does not turn, so nothing can follow it; leave follower out")
+            body = jump if body is None else body
             parts = np.zeros(len(rows.of))
             if body is None:
                 parts[: rows.nodes] = shares(shell, self.group, "omega" if self.follower else "u")

@@ -11,6 +11,7 @@ from magshell.mesh import Mesh
 from magshell.model import thickness as thicknesses
 from magshell.model.hinge import Hinge
 from magshell.model.region import NO_REMANENCE, Layer, Region
+from magshell.model.repeated import REPEATED, Repeated
 from magshell.model.rigid_body import RigidBody
 from magshell.model.shell import Shell
 from magshell.model.thickness import Thickness
@@ -44,6 +45,7 @@ def build_shell(file: ProblemFile, mesh: Mesh, folder: pathlib.Path) -> Shell:
         levels=table.levels,
         hinges=[builder.hinge(number, one) for number, one in enumerate(file.hinges)],
         rigid=[builder.rigid(number, one) for number, one in enumerate(file.rigid)],
+        repeated=[builder.repeated(number, one) for number, one in enumerate(file.repeated)],
         **given,
     )
 
@@ -88,6 +90,17 @@ class _Builder:
         with at(f"hinges[{number}].group"):
             hinge.edges(self._mesh)
         return hinge
+
+    def repeated(self, number: int, table: schema.RepeatedTable) -> Repeated:
+        """An entry of `repeated`."""
+        cls = REPEATED[table.kind]
+        for key in ("group", "image"):
+            with at(f"repeated[{number}].{key}"):
+                self._mesh.nodes_of(getattr(table, key))
+        with at(f"repeated[{number}]"):
+            made = cls(**{key: getattr(table, key) for key in cls.keys if getattr(table, key) is not None})
+            made.nodes(self._mesh)
+            return made
 
     def layers(self, where: str, tables: Sequence[schema.LayerTable]) -> list[Layer]:
         """The entries of `layers`."""

@@ -16,12 +16,13 @@ from magshell.magnetics.fields import COILS, MAGNETS
 from magshell.magnetics.remanence import REMANENCES
 from magshell.materials import MATERIALS, keys_of, names_of
 from magshell.model.loads import LOADS
+from magshell.model.repeated import REPEATED
 from magshell.model.springs import SPRINGS
 from magshell.model.supports import SUPPORTS
 from magshell.problem import fields as f
 from magshell.problem.schema.described import table_of
 from magshell.problem.schema.joints import HingeTable, RigidTable
-from magshell.problem.schema.loading import FieldTable, LoadTable, SpringTable, SupportTable
+from magshell.problem.schema.loading import FieldTable, LoadTable, RepeatedTable, SpringTable, SupportTable
 from magshell.problem.schema.material import MaterialTable
 from magshell.problem.schema.mesh import (
     Annulus,
@@ -83,6 +84,7 @@ __all__ = [
     "Rectangle",
     "RegionTable",
     "RemanenceTable",
+    "RepeatedTable",
     "ResultsTable",
     "RigidTable",
     "Round",
@@ -106,6 +108,7 @@ __all__ = [
     "material_tables",
     "problem_file",
     "remanence_tables",
+    "repeated_tables",
     "spring_tables",
     "support_tables",
 ]
@@ -119,6 +122,7 @@ class ProblemFile(Table):
         "mesh": "generator",
         "supports[]": "kind",
         "springs[]": "kind",
+        "repeated[]": "kind",
         "loads[]": "kind",
         "magnets[]": "shape",
         "coils[]": "shape",
@@ -149,6 +153,7 @@ class ProblemFile(Table):
     springs: tuple[SpringTable, ...] = ()
     rigid: tuple[RigidTable, ...] = ()
     hinges: tuple[HingeTable, ...] = ()
+    repeated: tuple[RepeatedTable, ...] = ()
     stages: tuple[StageTable, ...] = ()
     probes: dict[f.ProbeName, f.Position] = {}
     results: ResultsTable = ResultsTable()
@@ -213,6 +218,11 @@ def spring_tables() -> dict[str, type[Table]]:
     return {name: table_of("kind", (name,), one, one.keys, SpringTable) for name, one in SPRINGS.items()}
 
 
+def repeated_tables() -> dict[str, type[Table]]:
+    """The tables of all repetitions, by kind."""
+    return {name: table_of("kind", (name,), one, one.keys, RepeatedTable) for name, one in REPEATED.items()}
+
+
 def magnet_tables() -> dict[str, type[Table]]:
     """The tables of all magnets, by shape."""
     return {name: table_of("shape", (name,), one.make, one.keys, MagnetTable) for name, one in MAGNETS.items()}
@@ -225,14 +235,14 @@ def coil_tables() -> dict[str, type[Table]]:
 
 def problem_file() -> type[ProblemFile]:
     """The model of a file, with all that is registered now."""
-    registries = (MATERIALS, REMANENCES, LOADS, SUPPORTS, SPRINGS, MAGNETS, COILS)
+    registries = (MATERIALS, REMANENCES, LOADS, SUPPORTS, SPRINGS, REPEATED, MAGNETS, COILS)
     return _problem_file(*(tuple(registry.items()) for registry in registries))
 
 
 @lru_cache(maxsize=1)
 def _problem_file(*registered: tuple[tuple[str, Any], ...]) -> type[ProblemFile]:
     laws, ways, loads = material_tables(), remanence_tables(), load_tables()
-    supports, springs = support_tables(), spring_tables()
+    supports, springs, repeated = support_tables(), spring_tables(), repeated_tables()
     magnets, coils = magnet_tables(), coil_tables()
     law, magnetised = _one_of(laws, "law"), _list_of(_one_of(ways, "kind"))
     layer = create_model("LayerTable", __base__=LayerTable, material=(law, ...), remanence=(magnetised, ()))
@@ -251,11 +261,12 @@ def _problem_file(*registered: tuple[tuple[str, Any], ...]) -> type[ProblemFile]
         "magnets": (_list_of(_one_of(magnets, "shape")), ()),
         "coils": (_list_of(_one_of(coils, "shape")), ()),
         "springs": (_list_of(_one_of(springs, "kind")), ()),
+        "repeated": (_list_of(_one_of(repeated, "kind")), ()),
     }
     made = create_model("ProblemFile", __base__=ProblemFile, **entries)
     tables: tuple[type[Table], ...] = (made, shell, region, layer)
     tables += tuple(
-        table for kinds in (laws, ways, loads, supports, springs, magnets, coils) for table in kinds.values()
+        table for kinds in (laws, ways, loads, supports, springs, repeated, magnets, coils) for table in kinds.values()
     )
     made.classes = {table.__name__: table for table in tables}
     for table in tables:  # pickle finds classes in modules only

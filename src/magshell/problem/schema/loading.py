@@ -86,6 +86,14 @@ class SpringTable(Table):
     group: f.Name
 
 
+class RepeatedTable(Table):
+    """What the tables of all repetitions have."""
+
+    kind: str
+    group: f.Name
+    image: f.Name
+
+
 class LoadTable(Table):
     """What the tables of all loads have."""
 
