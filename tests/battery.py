@@ -288,7 +288,7 @@ def strain_energy(d, state):
 def dense(d, matrix):
     """The matrix on (row, component) pairs, zero where a component is fixed or absent: (11 rows, 11 rows)."""
     full = np.zeros((d.free.size, d.free.size))
-    at, number = np.flatnonzero(d.free), d.numbering.number[d.free]
+    at, number = np.flatnonzero(d.free), d.numbering.equations
     full[np.ix_(at, at)] = matrix.toarray()[np.ix_(number, number)]
     return full
 

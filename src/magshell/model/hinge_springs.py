@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
+from magshell.mesh.edges import SIDES
 from magshell.model.elastic import Elastic
 from magshell.model.hinge import Hinge
 from magshell.model.loads.cross import cross_matrix
@@ -45,10 +46,10 @@ def _of_edge(shell: Shell, rows: Rows, edge: IntArray) -> Iterator[tuple[int, in
     chord = mesh.points[edge[1]] - mesh.points[edge[0]]
     length = float(np.linalg.norm(chord))
     shares = (1 / 6, 1 / 6, 2 / 3) if shell.element.rest_nodes == 8 else (0.5, 0.5)
-    owners = np.flatnonzero((np.isin(elements[:, :4], root[edge[:2]])).sum(axis=1) >= 2)
-    owners = owners[np.isin(elements[owners], root[edge[2]]).any(axis=1)]
+    owners, number = np.nonzero(elements[:, 4:] == root[edge[2]])
+    side = SIDES[number]
     for node, share in zip(edge, shares, strict=False):
-        slots = np.argmax(elements[owners] == root[node], axis=1)
+        slots = side[np.arange(len(side)), np.argmax(elements[owners[:, None], side] == root[node], axis=1)]
         sides = rows.source[rows.elements[owners, slots], OMEGA.start]
         for a, b in zip(sides[:-1].tolist(), sides[1:].tolist(), strict=True):
             if a != b:

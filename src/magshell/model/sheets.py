@@ -15,7 +15,7 @@ import numpy as np
 from magshell.arrays import AnyArray, IntArray
 from magshell.errors import InputError
 from magshell.mesh import Mesh
-from magshell.mesh.edges import SIDES, Edges, edge_keys, find_edges
+from magshell.mesh.edges import SIDES
 from magshell.model.hinge import Hinge
 from magshell.model.images import Images
 from magshell.shell.normals import corner_normals
@@ -60,26 +60,21 @@ def sheets_of(mesh: Mesh, hinges: Sequence[Hinge], images: Images) -> Sheets:
     kinked = np.sum(normals * first[elements], axis=2) < KINK
     special = np.zeros(count, dtype=bool)
     special[elements[kinked & there]] = True
-    edges = find_edges(elements)
-    hinged, sprung = np.zeros(len(edges.first_side), dtype=bool), np.zeros(count, dtype=bool)
+    sides = np.where(mesh.elements[:, 4:] == mesh.elements[:, 2:3], -1, elements[:, 4:])
+    sharing = np.bincount(sides[sides >= 0], minlength=count)
+    hinged, at_hinge, sprung = np.zeros((3, count), dtype=bool)
     for hinge in hinges:
-        numbers = _edges_of(hinge, images.root[hinge.edges(mesh)], edges, count)
-        if hinged[numbers].any():
-            one, other = edges.sides[edges.first_side[numbers[np.argmax(hinged[numbers])]], :2]
-            raise InputError(f"{hinge.label}: the edge between nodes {one} and {other} is of another hinge too")
-        hinged[numbers] = True
-        nodes = edges.sides[edges.first_side[numbers]].ravel()
-        special[nodes] = True
-        sprung[nodes] |= hinge.stiffness > 0.0
+        wanted = images.root[hinge.edges(mesh)]
+        _check_edges(hinge, wanted, sharing, hinged)
+        hinged[wanted[:, 2]] = at_hinge[wanted] = special[wanted] = True
+        sprung[wanted] |= hinge.stiffness > 0.0
     piece, sheet = np.zeros(elements.shape, dtype=np.int64), np.zeros(elements.shape, dtype=np.int64)
     places = np.flatnonzero(there.ravel() & special[elements.ravel()])
     places = places[np.argsort(elements.ravel()[places], kind="stable")]
-    at_hinge = np.zeros(count, dtype=bool)
-    at_hinge[edges.sides[edges.first_side[hinged]].ravel()] = True
     for group in np.split(places, np.flatnonzero(np.diff(elements.ravel()[places])) + 1) if places.size else ():
         owner, slot = np.divmod(group, 8)
         if at_hinge[elements[owner[0], slot[0]]]:
-            piece[owner, slot] = _pieces(owner, slot, edges.edge_of_side, hinged)
+            piece[owner, slot] = _pieces(mesh.elements[owner], slot, np.where(hinged[sides[owner]], -1, sides[owner]))
         cosines = np.einsum("ix,jx->ij", normals[owner, slot], normals[owner, slot])
         for number in np.unique(piece[owner, slot]):
             own = piece[owner, slot] == number
@@ -90,28 +85,30 @@ def sheets_of(mesh: Mesh, hinges: Sequence[Hinge], images: Images) -> Sheets:
     return Sheets(np.flatnonzero(special), piece, sheet, sprung)
 
 
-def _edges_of(hinge: Hinge, wanted: IntArray, edges: Edges, count: int) -> IntArray:
-    """Numbers of the edges of a hinge."""
-    keys = edge_keys(edges.sides[edges.first_side], count)
-    numbers = np.searchsorted(keys, edge_keys(wanted, count))
-    free = np.flatnonzero(edges.sharing[numbers] < 2)
-    if free.size:
-        one, other = wanted[free[0], :2]
-        raise InputError(
-            f"{hinge.label}: the edge between nodes {one} and {other} is a free edge of the shell; a hinge joins two "
-            "or more elements"
-        )
-    return np.asarray(numbers)
+def _check_edges(hinge: Hinge, edges: IntArray, sharing: IntArray, hinged: AnyArray) -> None:
+    """Refuse edges of a hinge that fewer than two elements share, or that belong to another hinge."""
+    middles = edges[:, 2]
+    for at_fault, what in (
+        (sharing[middles] < 2, "is a free edge of the shell; a hinge joins two or more elements"),
+        (hinged[middles], "is of another hinge too"),
+    ):
+        if at_fault.any():
+            one, other = edges[np.argmax(at_fault), :2]
+            raise InputError(f"{hinge.label}: the edge between nodes {one} and {other} {what}")
 
 
-def _pieces(owner: IntArray, slot: IntArray, edge_of_side: IntArray, hinged: AnyArray) -> IntArray:
-    """Piece of each element about a node: those are one that hang together by edges without a hinge."""
+def _pieces(nodes: IntArray, slot: IntArray, sides: IntArray) -> IntArray:
+    """Piece of each element about a node: those are one that hang together by edges without a hinge.
+
+    An edge is known by its middle node: `nodes` (places, 8) as the mesh has it, `sides` (places, 4) at its root; -1
+    where elements do not hang together. An edge may lead from the node to its image.
+    """
     meets = (SIDES[None] == slot[:, None, None]).any(axis=2)
-    edges = np.where(meets, edge_of_side[4 * owner[:, None] + np.arange(4)], -1)
-    edges[(edges >= 0) & hinged[edges]] = -1
+    edges, ends = np.where(meets, sides, -1), nodes[np.arange(len(slot)), slot]
     common = (edges[:, None, :, None] == edges[None, :, None, :]) & (edges >= 0)[:, None, :, None]
-    same = common.any(axis=(2, 3)) | (owner[:, None] == owner)
-    return _components(same)
+    glued = nodes[:, None, 4:, None] != nodes[None, :, None, 4:]
+    common &= glued | (ends[:, None] == ends)[:, :, None, None]
+    return _components(common.any(axis=(2, 3)) | np.eye(len(slot), dtype=bool))
 
 
 def _components(linked: AnyArray) -> IntArray:
