@@ -176,7 +176,8 @@ class Unsupported:
 
     @cached_property
     def places(self):
-        return Places(self.shell.mesh, self.rows.carriers, self.shell.rigid)
+        shell = self.shell
+        return Places(shell.mesh, self.rows.carriers, shell.rigid, shell.periodic, shell.images)
 
     @cached_property
     def constraints(self):

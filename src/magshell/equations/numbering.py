@@ -8,6 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from magshell.arrays import AnyArray, IntArray
+from magshell.model.images import Beyond
 from magshell.model.rows import Rows, U
 from magshell.shell.unknowns import COLUMNS
 
@@ -54,7 +55,7 @@ class Numbering:
         graph, count = place_graph(rows, cliques), rows.places
         order = elimination_order(rows, cliques, ordering)
         free, own = free.copy(), free
-        free[rows.images.beyond.rows, U] = True
+        free[_first_beyond(rows).rows, U] = True
         counts = np.bincount(rows.of, free.sum(axis=1), minlength=count).astype(np.int64)
         first = np.empty(count, dtype=np.int64)
         first[order] = np.cumsum(counts[order]) - counts[order]
@@ -102,7 +103,7 @@ class Numbering:
 
 def _following(rows: Rows, number: IntArray, free: AnyArray) -> sp.csr_array:
     """The placed unknowns as a combination of the free ones (placed, free)."""
-    kept, (beyond, roots, steps) = np.sort(number[free]), rows.images.beyond
+    kept, (beyond, roots, steps) = np.sort(number[free]), _first_beyond(rows)
     one, other, factor = [kept], [kept], [np.ones(len(kept))]
     leading = [(number[roots, U], np.ones(len(roots)))]
     leading += [(number[jump, U][None], along) for jump, along in zip(rows.jumps, steps.T, strict=True)]
@@ -114,6 +115,13 @@ def _following(rows: Rows, number: IntArray, free: AnyArray) -> sp.csr_array:
         factor.append(np.broadcast_to(times[:, None], there.shape)[there])
     at = np.concatenate(one), np.searchsorted(kept, np.concatenate(other))
     return sp.csr_array((np.concatenate(factor), at), shape=(int(number.max()) + 1, len(kept)))
+
+
+def _first_beyond(rows: Rows) -> Beyond:
+    """Of the rows beyond a jump those that u is in."""
+    beyond = rows.images.beyond
+    first = rows.source[beyond.rows, U.start] == beyond.rows
+    return Beyond(*(one[first] for one in beyond))
 
 
 def elimination_order(rows: Rows, cliques: Sequence[IntArray], ordering: Ordering) -> IntArray:

@@ -77,6 +77,8 @@ def resolve(places: Places, supports: Supports, stages: int = 1) -> Constraints:
             value = condition.value * amplitudes(condition.history, stages, f"support on '{condition.group}'")
             for place, direction in places.rooted(condition, members):
                 directions.setdefault((place, condition.field), []).append((direction, value, condition.group))
+            for jump in places.level_jumps(condition, members).tolist():
+                directions.setdefault((jump, "u"), []).append((condition.direction, 0.0 * value, condition.group))
     for place, field, direction in _on_axes(places):
         directions.setdefault((place, field), []).append((direction, np.zeros(stages), "the axis of repetition"))
     for (node, field), wanted in directions.items():

@@ -86,7 +86,7 @@ class ImageRows(NamedTuple):
     turns : ndarray, shape (n, 3, 3)
         Q.
     beyond : Beyond
-        First rows of the nodes that a periodic motion leads to.
+        Rows of the nodes that a periodic motion leads to; those of one node share u.
     """
 
     rows: IntArray

@@ -87,21 +87,34 @@ class Places(NamedTuple):
     def rooted(self, condition: Condition, members: IntArray) -> Iterator[tuple[int, FloatArray]]:
         """Places and directions that a condition on some places holds: of images of others at their roots.
 
-        Raises
-        ------
-        InputError
-            u of a node that follows another with a jump.
+        u of a node beyond a jump is left to `level_jumps`.
         """
         nodes = len(self.mesh.points)
         for place in members.tolist():
             if self.images is None or place >= nodes or self.images.root[place] == place:
                 yield place, condition.direction
-                continue
-            root = int(self.images.root[place])
-            if condition.field == "u" and self.images.steps[place].any():
-                names = [one.name for one, steps in zip(self.jumps, self.images.steps[place], strict=True) if steps]
+            elif condition.field != "u" or not self.images.steps[place].any():
+                yield int(self.images.root[place]), condition.direction @ self.images.rotation[place]
+
+    def level_jumps(self, condition: Condition, members: IntArray) -> IntArray:
+        """Places of the jumps that have no component along a condition on u, which holds both sides alike.
+
+        Raises
+        ------
+        InputError
+            It holds a node beyond a jump, and not the one on the other side.
+        """
+        level: set[int] = set()
+        if condition.field != "u" or self.images is None or not self.jumps:
+            return np.empty(0, dtype=np.int64)
+        members = members[members < len(self.mesh.points)]
+        for node in members[self.images.steps[members].any(axis=1)].tolist():
+            root, stepped = int(self.images.root[node]), np.flatnonzero(self.images.steps[node])
+            if root not in members or (len(stepped) > 1 and not level.issuperset(stepped.tolist())):
+                names = " and ".join(repr(self.jumps[number].name) for number in stepped)
                 raise InputError(
-                    f"support on '{condition.group}': node {place} follows node {root} of another side of the cell, "
-                    f"with a jump; hold that node, and the jump by its name, {' and '.join(map(repr, names))}"
+                    f"support on '{condition.group}': node {node} follows node {root} on the other side of the cell "
+                    f"with a jump; hold both, or that node and the jump by its name, {names}"
                 )
-            yield root, condition.direction @ self.images.rotation[place]
+            level.add(int(stepped[0]))
+        return self.number - len(self.jumps) + np.array(sorted(level), dtype=np.int64)

@@ -244,9 +244,8 @@ def _with_images(rows: Rows, images: Images, nodes: IntArray) -> Rows:
     elements.ravel()[corners] = own[which.ravel()]
     turns = images.rotation[pairs[:, 0]]
     source = rows.source[roots]
-    beyond = first & images.steps[pairs[:, 0]].any(axis=1)
-    apart = images.steps[pairs[:, 0]].any(axis=1)
-    source[apart, U] = pairs[apart, :1]
+    beyond = images.steps[pairs[:, 0]].any(axis=1)
+    source[beyond, U] = pairs[beyond, :1]
     extended: dict[str, AnyArray] = {
         "of": pairs[:, 0],
         "source": source,
