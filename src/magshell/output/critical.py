@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from magshell.evaluation.patches import patches_of
 from magshell.files import append_line, csv_line, naming, write_atomically
 from magshell.output.vtu import grid, vtu
 from magshell.shell.unknowns import COLUMNS
@@ -67,7 +68,9 @@ class CriticalWriter(Observer):
 
 def write_mode(file: pathlib.Path, discretisation: Discretisation, point: CriticalPoint | BucklingMode) -> None:
     """A state with its mode as a VTU file."""
-    content = grid(discretisation, point)
+    content, patches = grid(discretisation, point), patches_of(discretisation.model.shell)
+    first = np.unique(patches.elements, return_index=True)[1]
+    mode = point.mode[discretisation.rows.elements.ravel()[first]]
     for array, field in (("mode", "u"), ("mode_director", "w"), ("mode_rotation", "omega")):
-        content.point_data.set_array(np.ascontiguousarray(point.mode[: content.n_points, COLUMNS[field]]), array)
+        content.point_data.set_array(np.ascontiguousarray(mode[:, COLUMNS[field]]), array)
     write_atomically(file, vtu(content))
