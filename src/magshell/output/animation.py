@@ -25,6 +25,7 @@ from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import find
 from magshell.files import write_atomically
 from magshell.mesh.geometry import unit
+from magshell.output.copies import between
 from magshell.output.labels import bar_title
 from magshell.output.scene import Camera, axes_from, best_axes, darkroom, deformed, field_arrow, fit, lettered
 from magshell.output.shape import INCHES, SCENE, colour_bar, colour_scale, shown_values, triad
@@ -355,7 +356,8 @@ def _mixed(one: Placed, other: Placed, share: float) -> Placed:
             (one.outer, other.outer),
         )
     )
-    return Placed(Surface(points, unit(normals), one.surface.triangles), inner, outer)
+    copies = between(one.copies, other.copies, share)
+    return Placed(Surface(points, unit(normals), one.surface.triangles), inner, outer, copies)
 
 
 def _front(camera: Camera, colours: Any, title: str, dpi: int) -> Image:

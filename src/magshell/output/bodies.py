@@ -10,6 +10,7 @@ import numpy as np
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import find
+from magshell.output.copies import Copy
 from magshell.output.scene import (
     MARGIN,
     OVERSAMPLING,
@@ -30,17 +31,6 @@ if TYPE_CHECKING:
     from magshell.solver.step import Step
 
 PIECES = 6
-
-
-class Copy(NamedTuple):
-    """x to matrix x + shift, shift in m."""
-
-    matrix: FloatArray
-    shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
-
-    def of(self, points: FloatArray) -> FloatArray:
-        """Images of points (..., 3)."""
-        return points @ self.matrix.T + np.array(self.shift)
 
 
 def shifted(x1: float = 0.0, x2: float = 0.0, x3: float = 0.0) -> tuple[Copy, ...]:

@@ -290,6 +290,19 @@ def hinge_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:
     return marks
 
 
+def repeated_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:
+    """Bars along the sides at which a repeated part meets its neighbours."""
+    marks, mesh = [], model.shell.mesh
+    for number, one in enumerate(model.shell.repeated):
+        edges = [mesh.edge_groups[name] for name in (one.group, one.image) if name in mesh.edge_groups]
+        if edges:
+            ends = mesh.points[np.concatenate(edges)][:, [[0, 2], [2, 1]]].reshape(-1, 2, 3)
+            places, width = ends.mean(axis=1) + 0.003 * size * axes[2], 0.007 * size
+            name = f"{one.group}, {one.image}: {one.kind}"
+            marks.append(Mark(name, HINGES[(number + 1) % 2], Solids.BARS, places, ends[:, 1] - ends[:, 0], width))
+    return marks
+
+
 def _closest(points: FloatArray) -> float:
     """Distance of a point (n, 3) to the next, in the mean over all; infinite for one alone."""
     from scipy.spatial import cKDTree

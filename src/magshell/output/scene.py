@@ -17,13 +17,14 @@ from numpy.typing import ArrayLike
 
 from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError
+from magshell.output.copies import with_copies
 from magshell.output.joints import joints_of
 from magshell.output.rendering import require_rendering
 from magshell.output.skin import MOST_ELEMENTS_WITH_EDGES, Placed
 from magshell.output.sources import Piece
 from magshell.output.sources import extent as sources_extent
 from magshell.output.sources import place as place_sources
-from magshell.output.style import ACCENT, INK, PALE
+from magshell.output.style import ACCENT, FAINT, GREY, INK, PALE
 from magshell.output.tessellation import Tessellation, element_edges
 
 if TYPE_CHECKING:
@@ -149,7 +150,8 @@ def draw(
     RenderingUnavailable
         This machine cannot draw without a screen.
     """
-    extent = np.vstack([placed.surface.points, Tessellation(shell.mesh.elements).at_points(shell.mesh.points)])
+    seen = with_copies(placed.surface.points, placed.copies)
+    extent = np.vstack([seen, Tessellation(shell.mesh.elements).at_points(shell.mesh.points)])
     axes = best_axes(extent) if view is None else axes_from(view)
     extent = np.vstack([extent, sources_extent(sources, extent)])
     arrow = field_arrow(field, extent, axes)
@@ -166,7 +168,10 @@ def deformed(
     sources: Sequence[Piece],
     camera: Camera,
 ) -> Callable[[Any], None]:
-    """What adds deformed shell, undeformed outline, field arrow (tail and head), magnets and coils to a plotter."""
+    """What adds deformed shell, undeformed outline, field arrow (tail and head), magnets and coils to a plotter.
+
+    Copies of a repeated part are grey: outputs have the axes of the part.
+    """
     import pyvista
 
     surface, mesh, outline = placed.surface, shell.mesh, joints_of(shell).outline
@@ -184,10 +189,16 @@ def deformed(
 
     def place(plotter: Any) -> None:
         plotter.add_mesh(body, scalars="colours", rgb=True, **SURFACE)
+        for copy in placed.copies:
+            image = pyvista.PolyData.from_regular_faces(copy.of(surface.points), surface.triangles)
+            image.point_data.active_normals = surface.normals @ copy.matrix.T
+            plotter.add_mesh(image, color=FAINT, **SURFACE)
         thin = {"lighting": False, "line_width": 1.0 * OVERSAMPLING}
         thick = {"lighting": False, "line_width": 1.9 * OVERSAMPLING}
         plotter.add_mesh(polylines(placed.inner + nearer), color=INK, opacity=0.28, **thin)
         plotter.add_mesh(polylines(placed.outer + nearer), color=INK, **thick)
+        for copy in placed.copies:
+            plotter.add_mesh(polylines(copy.of(placed.outer) + nearer), color=GREY, **thin)
         plotter.add_mesh(lines(mesh.points + behind, edges), color=PALE, opacity=0.5, **thin)
         plotter.add_mesh(lines(mesh.points, outline), color=PALE, **thick)
         if arrow is not None:

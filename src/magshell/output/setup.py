@@ -26,6 +26,7 @@ from magshell.output.marks import (
     load_marks,
     probe_marks,
     remanence_marks,
+    repeated_marks,
     spring_marks,
     support_marks,
 )
@@ -168,6 +169,7 @@ def setup_scene(model: Model, pixels: tuple[int, int], template: bool = False, b
         marks += [*support_marks(model, size, axes), *spring_marks(model, size, axes)]
         marks += [
             *hinge_marks(model, size, axes),
+            *repeated_marks(model, size, axes),
             *body_marks(model, size, axes),
             *probe_marks(model, size, axes),
         ]

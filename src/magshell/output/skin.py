@@ -8,6 +8,7 @@ wherever the faces of two neighbours differ, and lines between the regions. At k
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
@@ -15,6 +16,7 @@ import numpy as np
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.evaluation.converged import Converged
 from magshell.mesh.edges import SIDES
+from magshell.output.copies import Copy, neighbours, with_copies
 from magshell.output.joints import Mitres, joints_of, sides_of
 from magshell.output.tessellation import Surface, Tessellation, element_edges, own_nodes
 
@@ -34,11 +36,14 @@ class Placed(NamedTuple):
     surface : Surface
     inner, outer : FloatArray, shape (k, pieces + 1, 3)
         Curves: edges of elements; outer edges, kinks, joints, steps and borders of regions.
+    copies : sequence of Copy
+        Neighbours of a repeated part.
     """
 
     surface: Surface
     inner: FloatArray
     outer: FloatArray
+    copies: Sequence[Copy] = ()
 
 
 class Skin(Protocol):
@@ -57,7 +62,7 @@ class Skin(Protocol):
         """Where it is in a state."""
 
     def extent(self, reached: Converged) -> FloatArray:
-        """Positions (n, 3) of its nodes in a state, m."""
+        """Positions (n, 3) of its nodes in a state, with those of its copies, m."""
 
 
 def skin_of(shell: Shell, pieces: int | None = None) -> Skin:
@@ -90,13 +95,13 @@ class Sheet:
 
     def extent(self, reached: Converged) -> FloatArray:
         """Positions of its nodes in a state."""
-        return self._mesh.points + reached.displacement
+        return with_copies(self._mesh.points + reached.displacement, neighbours(reached))
 
     def placed(self, reached: Converged) -> Placed:
         """Where it is in a state."""
         x = self._mesh.points + reached.displacement
-        curves = (self._cells.edges(x, edges) for edges in (self._edges, self._outline))
-        return Placed(self._cells.surface(x), *curves)
+        inner, outer = (self._cells.edges(x, edges) for edges in (self._edges, self._outline))
+        return Placed(self._cells.surface(x), inner, outer, neighbours(reached))
 
 
 class Nodal(NamedTuple):
@@ -249,11 +254,11 @@ class Hull:
 
     def extent(self, reached: Converged) -> FloatArray:
         """Positions of its nodes in a state."""
-        return self.faces(reached).reshape(-1, 3)
+        return with_copies(self.faces(reached).reshape(-1, 3), neighbours(reached))
 
     def placed(self, reached: Converged) -> Placed:
         """Where it is in a state."""
-        return self.between(*self.faces(reached))
+        return self.between(*self.faces(reached))._replace(copies=neighbours(reached))
 
     def between(self, bottom: FloatArray, top: FloatArray) -> Placed:
         """Where it is with its faces at given positions (elements, 8, 3), m."""

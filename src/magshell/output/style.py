@@ -19,6 +19,7 @@ DPI = 160
 INK = "#1a1f26"
 GREY = "#4b5563"
 PALE = "#8b95a1"
+FAINT = "#d9dee5"
 ACCENT = "#c2410c"
 COLOURS = ("#1d4ed8", ACCENT, "#15803d", "#7e22ce", "#0891b2", "#be185d", "#65a30d", "#4b5563")
 TEXT: dict[str, Any] = {"fontsize": 15, "color": INK}

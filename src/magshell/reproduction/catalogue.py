@@ -10,7 +10,8 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.errors import InputError, suggest
-from magshell.output.bodies import Body, Copy, mirrored, shifted, step_at, turned
+from magshell.output.bodies import Body, mirrored, shifted, step_at, turned
+from magshell.output.copies import Copy
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh
