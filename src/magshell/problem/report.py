@@ -17,6 +17,7 @@ from magshell.mesh.quality import worst
 from magshell.model import symmetry
 from magshell.model.doubts.figures import Figures, Whole, figures_of
 from magshell.model.doubts.loads import strength
+from magshell.model.doubts.mesh_error import in_words
 from magshell.model.elastic import ElasticSupport
 from magshell.model.support import Support
 from magshell.model.supports import SymmetryPlane
@@ -118,6 +119,7 @@ def _mesh(problem: Problem, extent: float) -> Iterator[tuple[str, str]]:
         yield f"X{axis + 1}", " to ".join(span)
     yield "worst corner", _worst(quality["scaled_jacobian"], "scaled Jacobian, 1 is best")
     yield "worst aspect ratio", _worst(quality["aspect_ratio"], "longest over shortest side")
+    yield "expected error", in_words(problem.model.expected_error)
     yield "groups", ", ".join(mesh.groups) or "none"
 
 
