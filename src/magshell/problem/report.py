@@ -42,16 +42,16 @@ from magshell.wording import counted, quantity
 
 @dataclass(frozen=True)
 class Report:
-    """What `magshell check` tells.
+    """What `magshell check` prints.
 
     Attributes
     ----------
     sections : dict of str to list of (str, str)
         Label and text of every line, by section.
     warnings : list of str
-        What smells of a slip.
+        Likely slips.
     notes : list of str
-        What is worth knowing besides.
+        Further remarks.
     """
 
     sections: dict[str, list[tuple[str, str]]]
@@ -272,7 +272,7 @@ def _coordinate(value: float, extent: float) -> str:
 
 
 def _doubts(problem: Problem, figures: Whole) -> Iterator[str]:
-    """What smells of a slip in the model, and what only its file shows."""
+    """Likely slips of the model, and those that only its file shows."""
     yield from problem.model.doubts()
     yield from _other_thickness(problem, figures)
     yield from region_report.doubts(problem)
