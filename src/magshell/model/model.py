@@ -164,7 +164,7 @@ class Model:
         return str(drawing("model_html")(self))
 
     def doubts(self) -> list[str]:
-        """Sentences, each of a slip that the model may have, as `magshell check` says them; empty: none is found."""
+        """Likely slips, a sentence each, as `magshell check` prints them; an empty list if none is found."""
         return doubts.doubts(self)
 
     @property
