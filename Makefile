@@ -37,6 +37,7 @@ verify: $(VENV)/installed-dev
 	$(BIN)/python docs/make_accuracy_study.py
 	$(BIN)/python docs/make_published_study.py
 	$(BIN)/python docs/make_path_study.py
+	$(BIN)/python docs/make_mesh_study.py
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)

@@ -1,7 +1,7 @@
-"""The one door from objects to their pictures.
+"""Finds the functions that draw or write an object, by name.
 
-A mesh shows itself in a notebook and a path saves itself, but what draws them stands on what they are. So the functions
-that draw are found here by name when a picture is asked for; nothing else in the package looks upward.
+Meshes, models and paths show and save themselves, but the modules that draw import them. So these functions are looked
+up here when they are called; no other module of the package looks upward.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Files that are whole or absent, and disk errors that name the file."""
+"""Files that are written completely or not at all, and disk errors that name the file."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ def with_suffix(file: str | os.PathLike[str], *suffixes: str) -> pathlib.Path:
 
 
 def refuse_somebodys(directory: pathlib.Path, made: bool, patterns: Iterable[str]) -> None:
-    """Refuse to write into a folder where something of somebody's own would be replaced or removed.
+    """Refuse to write into a folder where files that no run has made would be replaced or removed.
 
     Parameters
     ----------
     directory : pathlib.Path
     made : bool
-        Whether the folder as a whole was made by an earlier run of the command: then nothing in it is.
+        Whether the whole folder was made by an earlier run of the command: then anything may be replaced.
     patterns : iterable of str
         What the command writes there.
 
@@ -53,7 +53,7 @@ def refuse_somebodys(directory: pathlib.Path, made: bool, patterns: Iterable[str
 
 
 def refuse_to_replace(directory: pathlib.Path, names: Sequence[str]) -> None:
-    """Refuse a folder in which these files, if there are any, are somebody's own.
+    """Refuse a folder if there are any of these files, which no run has made.
 
     Raises
     ------

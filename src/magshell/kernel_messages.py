@@ -1,4 +1,4 @@
-"""What is said while kernels are compiled: by displays of a solve, and by every other command."""
+"""Messages while kernels are compiled, in displays of a solve and in every other command."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 
 class KernelMessages(logging.Handler):
-    """What compilation and its cache have to say, as lines of a display; the display that listens last has them all.
+    """Messages of compilation and its cache as lines of a display; the display that listens last gets them all.
 
     A solve compiles some fifteen functions at its first use. One line at its start says what is waited for, and how
     long; later ones say that a further law is compiled.

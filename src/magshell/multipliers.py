@@ -1,4 +1,4 @@
-"""How a quantity varies along the load path: a multiplier at the end of each stage, straight in between."""
+"""How a quantity varies along the load path: a multiplier at the end of each stage, linear in between."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ def threads_of(*variables: str) -> int:
 
 @contextmanager
 def interrupts_wait() -> Iterator[None]:
-    """Ctrl-C is held back while processes are started, and they never hear it: the parent reacts and tells them."""
+    """Hold back Ctrl-C while processes are started. They ignore it; the parent reacts and tells them."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return

@@ -103,7 +103,7 @@ class ProgressDisplay(Observer):
             )
 
     def cut(self, load_factor: float, reason: str) -> None:
-        """Say that a step is tried again, shorter; why, is said where the path ends for it."""
+        """Report that a step is tried again, shorter; the reason is given if the path ends there."""
         text = f"step to {_percent(load_factor)} is too large, trying a smaller one"
         if self._live:
             self._bar.update(self._task, description=text)

@@ -1,4 +1,4 @@
-"""Functions made by functions, which can be pickled: as what made them, and of what."""
+"""Functions made by functions that can be pickled: by their maker and its arguments."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ class Made:
 
 
 def remembered(maker: Maker) -> Maker:
-    """Let the functions that a function of a module makes be pickled; its arguments must be able to be.
+    """Let the functions that a function of a module makes be pickled, if its arguments can be.
 
-    What it makes is the same function, but for its type.
+    They stay the same functions, except for their type.
     """
 
     @functools.wraps(maker)

@@ -1,7 +1,7 @@
 """Results folders: made from a problem, and read back as a problem with its path.
 
-A folder runs by itself: it holds the problem file and copies of the files that it names, so that a run can go on in
-it, and its results can be looked at, wherever it is.
+A folder is self-contained: it holds the problem file and copies of the files that it names, so that a run can be
+resumed and its results can be viewed wherever the folder is.
 """
 
 from __future__ import annotations
@@ -162,7 +162,7 @@ def make(source: Problem, directory: pathlib.Path) -> None:
 
 
 def writers(source: Problem, directory: pathlib.Path) -> list[Observer]:
-    """What writes the files of a results folder; the checkpoint first, so that it has all that the others show."""
+    """Observers that write the files of a results folder; the checkpoint first, so that it is never behind them."""
     return [
         CheckpointWriter(directory, copies.digest(source)),
         SummaryWriter(directory),
@@ -173,7 +173,7 @@ def writers(source: Problem, directory: pathlib.Path) -> list[Observer]:
 
 
 def _built(file: pathlib.Path) -> Problem:
-    """The problem of a folder, without a word on defaults: its run has said it."""
+    """The problem of a folder, without the note on defaults, which its run has given."""
     source = find(file)
     return build(check(parse(source.text, source.name), source.name), *source)
 

@@ -33,8 +33,8 @@ class Dimension:
     display : tuple of (str, float)
         Unit and the smallest magnitude (SI) that is shown in it, in falling order.
     usual : tuple of (str, float)
-        Unit that is proposed to who wrote a number without one, and the magnitude below which it is, in rising order;
-        beyond the last the SI unit.
+        Unit that is suggested for a number without one, and the magnitude below which it is, in rising order; beyond
+        the last the SI unit.
     """
 
     name: str
@@ -305,12 +305,12 @@ def _example(dimension: Dimension) -> str:
 
 
 def _usual_unit(magnitude: float, dimension: Dimension) -> str:
-    """Unit in which people have numbers of this size."""
+    """Usual unit for numbers of this size."""
     return next((unit for unit, most in dimension.usual if magnitude < most), next(iter(dimension.units)))
 
 
 def _as_written(value: object) -> str:
-    """A number as somebody would write it: 30 for 30.0."""
+    """A number as one would write it: 30 for 30.0."""
     return shortened(str(value).strip().removesuffix(".0"))
 
 

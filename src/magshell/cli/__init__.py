@@ -1,4 +1,4 @@
-"""The command `magshell`. The words are here, the work is elsewhere; each command is a module."""
+"""Parses the command line of `magshell`; each command is a module."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ examples:
   magshell examples                       list the built-in problems
   magshell run strip-10 --out results     solve one of them
   magshell examples --copy gripper        copy one to change it
-  magshell check gripper.toml             see what was understood, without solving
+  magshell check gripper.toml             report what was understood, without solving
   magshell show gripper.toml              draw it: mesh, remanence, field, supports
   magshell run gripper.toml --out results
   magshell mesh part.step --size "0.5 mm" mesh a geometry, or say what a mesh file holds
@@ -46,7 +46,7 @@ examples:
   magshell export results --out body.stl  the deformed body as a solid
   magshell sweep strip-10 --set shell.thickness="0.8,1.1 mm" --out sweep
   magshell buckling my-plate.toml --out results
-  magshell reproduce --out reproduction   the source paper's examples beside what it says
+  magshell reproduce --out reproduction   the source paper's examples, compared with its numbers
 
 exit status: 0 solved, 1 not solved, 2 bad input, 130 interrupted"""
 

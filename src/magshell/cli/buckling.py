@@ -18,13 +18,13 @@ examples:
   magshell buckling my-plate.toml --modes 8 --out results
 
 The stages before the last one are followed; the multipliers are load factors of the last stage, about the state that
-they lead to (with one stage: about the undeformed state). Negative: the loading reversed. They are good where the part
-turns and strains little before it buckles; how much is told with each.
+they lead to (with one stage: about the undeformed state). Negative: the loading reversed. They are accurate where the
+part turns and strains little before it buckles; both are printed with each.
 DIR receives buckling.csv and buckling/ (the modes, for ParaView and as pictures)."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """What follows the command."""
+    """Add the arguments of the command."""
     parser.add_argument("problem", metavar="FILE|NAME", help="a problem file (.toml) or a built-in problem")
     add_settings(parser)
     parser.add_argument("--out", metavar="DIR", required=True, help="folder for the results, made if missing")

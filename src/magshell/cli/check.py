@@ -9,7 +9,7 @@ from magshell.cli.memory import memory_line
 from magshell.cli.settings import add_settings
 from magshell.cli.status import SOLVED
 
-ABOUT = "say what a problem file means, without solving"
+ABOUT = "report what was understood of a problem file, without solving"
 EXAMPLES = """
 examples:
   magshell check gripper
@@ -18,7 +18,7 @@ examples:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """What follows the command."""
+    """Add the arguments of the command."""
     parser.add_argument("problem", metavar="FILE|NAME", help="a problem file (.toml) or a built-in problem")
     add_settings(parser)
 

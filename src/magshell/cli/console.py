@@ -1,4 +1,4 @@
-"""What commands say: plain lines, warnings, errors."""
+"""Output of commands: plain lines, warnings, errors."""
 
 from __future__ import annotations
 

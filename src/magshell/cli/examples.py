@@ -18,9 +18,9 @@ examples:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """What follows the command."""
+    """Add the arguments of the command."""
     parser.add_argument("--copy", metavar="NAME", help="write the problem file of NAME to DEST")
-    parser.add_argument("dest", metavar="DEST", nargs="?", help="a file or folder; here, without it")
+    parser.add_argument("dest", metavar="DEST", nargs="?", help="a file or folder (default: this folder)")
 
 
 def run(given: argparse.Namespace) -> int:

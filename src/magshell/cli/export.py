@@ -19,11 +19,11 @@ examples:
 .stl is a closed surface of flat triangles, binary, in mm: for slicers and CAD. .vtu holds solid elements of second
 order, hexahedra of 20 nodes and wedges of 15, in m, with the outputs of the mid-surface: for ParaView
 and other solvers. Stresses and strains of the faces are in DIR/steps.
-A run that was interrupted, or that is still going on, is exported as far as it came."""
+A run that was interrupted, or that is still going on, is exported as far as it got."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """What follows the command."""
+    """Add the arguments of the command."""
     parser.add_argument("directory", metavar="DIR", help="a folder that magshell run has written")
     parser.add_argument("--out", metavar="FILE", required=True, help="the file to write: .stl or .vtu")
     parser.add_argument("--step", metavar="N", default="-1", help="number of the step, negative from the end")

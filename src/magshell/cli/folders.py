@@ -9,7 +9,7 @@ from magshell.errors import InputError
 
 
 def made(directory: pathlib.Path) -> pathlib.Path:
-    """The folder for the results, there and writable."""
+    """The folder for the results, made if missing; refused unless it is writable."""
     try:
         directory.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError):

@@ -1,4 +1,4 @@
-"""What a terminal cannot show is written so that it can be read: é as e, ³ as ^3, µ as u, α as alpha."""
+"""Replaces letters that a terminal cannot show: é by e, ³ by ^3, µ by u, α by alpha."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What commands say of the memory that a solve needs."""
+"""Messages on the memory that a solve needs."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MUCH, SHARE = 1e9, 0.25
 
 
 def memory_line(needed: float, free: float | None) -> str:
-    """What a solve needs, and what there is."""
+    """The memory that a solve needs, and what is free."""
     return f"about {_shown(needed)}" + (f"; {_shown(free)} are free" if free is not None else "")
 
 

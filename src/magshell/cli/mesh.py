@@ -37,30 +37,34 @@ written says its unit itself:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """What follows the command."""
+    """Add the arguments of the command."""
     parser.add_argument("file", metavar="FILE", help="a drawing, a geometry or a mesh")
-    parser.add_argument("--size", metavar="LENGTH", help='side of an element, such as "0.5 mm"; not of a mesh')
+    parser.add_argument("--size", metavar="LENGTH", help='side of an element, such as "0.5 mm"; not for a mesh')
     parser.add_argument("--unit", metavar="UNIT", help="of the lengths in the file: m, cm, mm or um")
     parser.add_argument(
-        "--out", metavar="FILE.msh", help="the mesh to write; of a geometry: here, by its name, without it"
+        "--out", metavar="FILE.msh", help="the mesh to write (default for a geometry: its name, in this folder)"
     )
     parser.add_argument(
-        "--second-order", action="store_true", help="raise elements of first order, curved surfaces kept"
+        "--second-order", action="store_true", help="raise elements of first order to second, keeping curved surfaces"
     )
     parser.add_argument(
-        "--closed", action="store_true", help="a closed surface with edges is meant, such as a box, and no solid's skin"
+        "--closed",
+        action="store_true",
+        help="the closed surface is a shell, such as a box, and not the skin of a solid",
     )
     parser.add_argument(
-        "--mid-surface", action="store_true", help="of a solid of constant thickness: a body, solid elements, or a skin"
+        "--mid-surface",
+        action="store_true",
+        help="mesh the mid-surface of a solid of constant thickness: a body, solid elements, or a skin",
     )
     parser.add_argument(
         "--holes", metavar="LAYER", action="append", help="a layer of a drawing whose outlines are holes; once for each"
     )
-    parser.add_argument("--gap", metavar="LENGTH", help="ends of a drawing's lines closer than this are joined")
+    parser.add_argument("--gap", metavar="LENGTH", help="join ends of a drawing's lines that are closer than this")
     parser.add_argument(
         "--weld",
         metavar="LENGTH",
-        help="nodes of a mesh no further apart become one, as at an open seam",
+        help="merge nodes of a mesh that are no further apart, as at an open seam",
     )
     parser.add_argument(
         "--cut", metavar="GROUP", action="append", help="edges along which the surface is cut; once for each group"
@@ -99,7 +103,7 @@ def run(given: argparse.Namespace) -> int:
 
 
 def say_origin(out: Console, mesh: Mesh) -> None:
-    """In one line what was read, of a mesh from a file."""
+    """Report the file of a mesh in one line."""
     from magshell.mesh.files import FileMesh
     from magshell.mesh.files.summary import in_a_line
 
@@ -133,7 +137,7 @@ def _wishes(given: argparse.Namespace) -> Wishes:
 
 
 def _target(out: str | None, source: pathlib.Path, geometry: bool) -> pathlib.Path | None:
-    """Where to write; nobody's own file is lost."""
+    """Where to write; files that the command did not write are not replaced."""
     if out is None and not geometry:
         return None
     target = pathlib.Path(out if out is not None else f"{source.stem}.msh")

@@ -23,7 +23,7 @@ examples:
   magshell plot results --color energy --steps 0,5,-1
   magshell plot results --steps all --out pictures
   magshell plot results --curves foot.R3,foot.R1     these columns of history.csv in curve.png
-  magshell plot results --animate shape.gif          besides, the path as an animation
+  magshell plot results --animate shape.gif          also the path as an animation
   magshell plot results --animate shape.gif --seconds 8 --smooth --camera 1,-1,0.5
   magshell plot results --animate shape.mp4          as a video: pip install 'magshell[video]'
 
@@ -31,11 +31,11 @@ Without --steps the shapes are spread evenly along the path. All of them are see
 and true to scale. OUTPUT is a name or symbol of the results: u3, u, energy, rotation, thickness_ratio, remanence, ...
 Every frame of an animation is a converged step, seen for as long as the path is to the next one; the last is held.
 --smooth interpolates linearly between the steps.
-A run that was interrupted, or that is still going on, is drawn as far as it came."""
+A run that was interrupted, or that is still going on, is drawn as far as it got."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """What follows the command."""
+    """Add the arguments of the command."""
     parser.add_argument("directory", metavar="DIR", help="a folder that magshell run has written")
     parser.add_argument("--color", metavar="OUTPUT", default="u3", help="what colours the shapes (default: u3)")
     parser.add_argument("--steps", metavar="N,N,...", help="numbers of steps, negative from the end; or: all")

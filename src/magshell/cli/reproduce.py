@@ -9,7 +9,7 @@ from magshell.cli.console import complain, console, say
 from magshell.cli.folders import made
 from magshell.cli.status import INTERRUPTED, NOT_SOLVED, SOLVED
 
-ABOUT = "solve the examples of the source paper and compare with it"
+ABOUT = "solve the examples of the source paper and compare them with its numbers"
 EXAMPLES = """
 examples:
   magshell reproduce --out reproduction
@@ -21,8 +21,8 @@ Each example is on disk as soon as it is solved: Ctrl-C keeps those that are don
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """What follows the command."""
-    parser.add_argument("names", metavar="NAME", nargs="*", help="an example of the paper; all six without it")
+    """Add the arguments of the command."""
+    parser.add_argument("names", metavar="NAME", nargs="*", help="an example of the paper (default: all six)")
     parser.add_argument("--out", metavar="DIR", required=True, help="folder for the results, made if missing")
 
 

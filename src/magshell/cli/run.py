@@ -41,17 +41,17 @@ examples:
 
 DIR receives history.csv (the curves), shell.pvd and steps/ (for ParaView), summary.json and the pictures, and where
 the path turns or branches critical.csv and critical/ (the modes).
-Every converged step is on disk at once, in checkpoint/ with all that going on needs: after Ctrl-C, a full disk or a
-kill, --resume goes on from the last one, to the same numbers as a run that was never stopped."""
+Every converged step is on disk at once; checkpoint/ has all that is needed to continue. After Ctrl-C, a full disk or a
+kill, --resume continues from the last one, with the same numbers as a run that was never stopped."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """What follows the command."""
+    """Add the arguments of the command."""
     parser.add_argument("problem", metavar="FILE|NAME", nargs="?", help="a problem file (.toml) or a built-in problem")
     add_settings(parser)
     folder = parser.add_mutually_exclusive_group(required=True)
     folder.add_argument("--out", metavar="DIR", help="folder for the results, made if missing")
-    folder.add_argument("--resume", metavar="DIR", help="go on with the run in this folder (no FILE then)")
+    folder.add_argument("--resume", metavar="DIR", help="continue the run in this folder (without FILE)")
 
 
 def run(given: argparse.Namespace) -> int:
@@ -130,7 +130,7 @@ def _resumed(directory: pathlib.Path) -> int:
 def _follow(
     out: Console, problem: Problem, directory: pathlib.Path, followed: Callable[[Sequence[Observer]], Path]
 ) -> int:
-    """Follow the path with the folder's writers watching, then write what only the end of a run has."""
+    """Follow the path while the folder's files are written, then write those of the end of a run."""
     from magshell.output.checkpoint import step_files
     from magshell.output.pictures import draw_pictures
     from magshell.output.summary import write_summary
@@ -181,7 +181,7 @@ class _Terminated(KeyboardInterrupt):
 
 @contextlib.contextmanager
 def _terminating() -> Iterator[None]:
-    """Hear SIGTERM as Ctrl-C, where signals can be heard."""
+    """Treat SIGTERM as Ctrl-C, where signals can be handled."""
 
     def raise_it(number: int, frame: FrameType | None) -> None:
         raise _Terminated
@@ -207,7 +207,7 @@ def _reason(stop: BaseException) -> str:
 
 
 def _is_complete(directory: pathlib.Path) -> bool:
-    """Whether a run has written also what comes last."""
+    """Whether a run has also written its last files."""
     from magshell.files import read_at_most
     from magshell.output.summary import MOST_BYTES
 
@@ -219,7 +219,7 @@ def _is_complete(directory: pathlib.Path) -> bool:
 
 
 def _forget_earlier_run(out: Console, directory: pathlib.Path) -> None:
-    """Remove what only the end of a run writes, so that no run leaves the end of another; say so."""
+    """Remove the files that the end of an earlier run has written, and say so."""
     from magshell.results import begun
 
     earlier = [file for name in _AT_THE_END if (file := directory / name).exists()]
@@ -230,7 +230,7 @@ def _forget_earlier_run(out: Console, directory: pathlib.Path) -> None:
 
 
 def _say_still(out: Console, path: Path) -> None:
-    """That a path to its end has moved nothing, if so."""
+    """Warn if a path that reached its end has moved nothing."""
     from magshell.output.rounding import STILL
 
     size = path.model.shell.mesh.size

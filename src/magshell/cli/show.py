@@ -21,10 +21,10 @@ examples:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """What follows the command."""
+    """Add the arguments of the command."""
     parser.add_argument("problem", metavar="FILE|NAME", help="a problem file (.toml) or a built-in problem")
     add_settings(parser)
-    parser.add_argument("--out", metavar="PICTURE.png", help="the picture; without it NAME-show.png in this folder")
+    parser.add_argument("--out", metavar="PICTURE.png", help="the picture (default: NAME-show.png in this folder)")
     parser.add_argument(
         "--template",
         action="store_true",

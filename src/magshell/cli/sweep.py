@@ -18,7 +18,7 @@ examples:
   magshell sweep arm.toml --set field.flux_density="0 mT:50 mT:11" --set shell.thickness="0.4,0.8 mm" --out sweep
   magshell sweep arm.toml --set "remanence[0].magnitude=40 mT:120 mT:5" --set shell.element=quadratic,paper --out sweep
   magshell sweep arm.toml --set mesh.elements="[10, 2],[20, 4]" --out sweep
-  magshell sweep --resume sweep                        go on, and solve again what failed
+  magshell sweep --resume sweep                        continue, and solve again what failed
   magshell sweep arm.toml --set ... --out sweep --dask tcp://head:8786
 
 KEY is written as messages write it: shell.thickness, remanence[0].magnitude, stages[0].target.
@@ -31,12 +31,12 @@ end), sweep.png, and cells/0001/ and so on, each a folder of results as of `mags
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """What follows the command."""
+    """Add the arguments of the command."""
     parser.add_argument("problem", metavar="FILE|NAME", nargs="?", help="a problem file (.toml) or a built-in problem")
     parser.add_argument("--set", metavar="KEY=VALUES", action="append", default=[], help="values of a key (repeatable)")
     where = parser.add_mutually_exclusive_group(required=True)
     where.add_argument("--out", metavar="DIR", help="folder for the results, made if missing")
-    where.add_argument("--resume", metavar="DIR", help="go on with the sweep in this folder")
+    where.add_argument("--resume", metavar="DIR", help="continue the sweep in this folder")
     parser.add_argument("--workers", metavar="N", type=int, help="processes (default: as many as there are cores)")
     parser.add_argument("--dask", metavar="ADDRESS", help="solve on the cluster of this Dask scheduler")
 

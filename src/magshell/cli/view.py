@@ -19,11 +19,11 @@ examples:
 The page shows the deformed shape in three dimensions (drag to rotate, wheel to zoom, drag with the right button or with
 shift to pan; two fingers on a touch screen), a slider over the steps (arrow keys, space to play), every output as a
 colour, and the curves of the probes (click a mark to go to its step). It needs no network and no other file: send it
-to anybody. A run that was interrupted, or that is still going on, is shown as far as it came."""
+to anybody. A run that was interrupted, or that is still going on, is shown as far as it got."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """What follows the command."""
+    """Add the arguments of the command."""
     parser.add_argument("directory", metavar="DIR", help="a folder that magshell run has written")
     parser.add_argument("--out", metavar="FILE", help="the page (default: DIR/view.html)")
     parser.add_argument("--color", metavar="OUTPUT", default="u3", help="what colours the shape at first (default: u3)")

@@ -1,4 +1,4 @@
-"""What terms are evaluated at: an instant of a solve, and increments from one to the next."""
+"""An instant of a solve, at which terms are evaluated, and increments from one to the next."""
 
 from __future__ import annotations
 

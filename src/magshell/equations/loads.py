@@ -1,4 +1,4 @@
-"""Forces at nodes as a term of the equations: loads, and what else acts there."""
+"""Forces at nodes as terms of the equations: loads and others."""
 
 from __future__ import annotations
 

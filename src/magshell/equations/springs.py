@@ -17,7 +17,7 @@ from magshell.shell.unknowns import COMPONENTS
 
 
 class SpringTerm(LoadTerm):
-    """Minus the forces of the springs of a model: nodal forces as those of loads, which nothing scales.
+    """Minus the forces of the springs of a model: nodal forces as those of loads, but without a multiplier.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""What is known of a converged state: point values, balance, and the outputs that files and pictures show."""
+"""Quantities of a converged state: point values, balance, and the outputs that files and pictures show."""

@@ -1,4 +1,4 @@
-"""A converged state with its loading: what outputs are evaluated of."""
+"""A converged state with its loading, of which outputs are evaluated."""
 
 from __future__ import annotations
 

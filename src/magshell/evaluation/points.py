@@ -125,7 +125,7 @@ def faces(shell: Shell, geometry: SectionGeometry) -> Levels:
 def at_heights(reference: Reference, values: FloatArray, z: FloatArray) -> FloatArray:
     """Values of the levels (elements, p, k) at heights z (elements, p, n): linear within the layer that is nearest.
 
-    What is known at one level of a layer only is constant in it.
+    Values known at only one level of a layer are constant in it.
     """
     own, made = reference.geometry.z, reference.body.levels["material"]
     apart = np.abs(own[:, :, None] - z[..., None])

@@ -3,8 +3,8 @@
 Tensors are carried from a point to a node in frames that turn with the surface normal and about nothing else, so that
 what is constant along a curved surface stays so, whatever the mesh.
 
-What stretches and bends the surface is good at the points, and extrapolated from there. Transverse shear is the next
-derivative: only its mean over an element is good. So a linear field is laid through the mean of each element and those
+Stretching and bending strains are accurate at the points, and extrapolated from there. Of the transverse shear only the
+mean over an element is accurate. So a linear field is laid through the mean of each element and those
 of its neighbours in the patch. Both are of second order at inner nodes and at the edge.
 """
 
@@ -57,7 +57,7 @@ class Recovery(NamedTuple):
     def vectors(self, values: FloatArray, shear: bool = True) -> FloatArray:
         """Components in the frames of the points (elements, p, 3) as components in the local axes (rows, 3).
 
-        Of the rotations of transverse shear the first two are good in the mean only.
+        Of the rotations of transverse shear only the means of the first two are accurate.
         """
         nodal = np.matmul(self.to_nodes, values)
         if shear:

@@ -40,7 +40,7 @@ class PardisoFactors(ScaledFactors):
 
 
 class Pardiso:
-    """PARDISO; a handle whose factors are gone serves again, with its symbolic phase."""
+    """PARDISO; a handle whose factors were released is used again, with its symbolic phase."""
 
     name = "PARDISO"
 

@@ -30,7 +30,7 @@ def _libraries() -> list[Any]:
 
 
 class _OneThread:
-    """Holds the libraries to one thread as long as anybody wants it; the last to leave lets them go."""
+    """Limits the libraries to one thread while any caller needs it; the last one restores them."""
 
     def __init__(self) -> None:
         self._lock, self._wanted, self._before = threading.Lock(), 0, list[int]()

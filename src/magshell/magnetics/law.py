@@ -1,4 +1,4 @@
-"""What a magnetic coupling law is, and how the kernels reach the one in use.
+"""What a magnetic coupling law is, and how the kernels call it.
 
 A law says what the external flux density B does at a material point whose remanence B̃ (reference configuration) is
 carried along by the deformation gradient, m = F B̃, and by the micro-rotation, n = R̃ B̃. Per unit reference volume

@@ -1,4 +1,4 @@
-"""What a material law is, and how the kernels reach the one in use.
+"""What a material law is, and how the kernels call it.
 
 A law is a free energy Psi = W(U) + (gamma/2) tr(G Gᵀ) per unit reference volume, of the micropolar stretch
 U = R̃ᵀF and the wryness G. It is one file: a NamedTuple of its parameters, and a function of U,

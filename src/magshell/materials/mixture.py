@@ -1,4 +1,4 @@
-r"""What an elastomer becomes with magnetic particles in it: moduli, remanence and density by volume fraction.
+r"""An elastomer with magnetic particles: moduli, remanence and density by volume fraction.
 
 With the volume fraction f of particles that do not deform, the shear modulus grows by a factor g(f):
 
@@ -72,7 +72,7 @@ def composite(
     particle_fraction : float
         Volume of the powder over that of the composite.
     particle_remanence : float
-        Of the powder, magnetised as the part is, T; its data sheet says it.
+        Of the powder, magnetised as the part is, T; see its data sheet.
     stiffening : {"mooney", "guth-gold", "krieger-dougherty"}, optional
         The formula for the shear modulus, see `magshell.materials.mixture`.
     particle_density, matrix_density : float, optional

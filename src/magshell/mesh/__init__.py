@@ -1,4 +1,4 @@
-"""Meshes of 8-node quadrilaterals and 6-node triangles with named groups: by a generator, from a file or arrays."""
+"""Meshes of 8-node quadrilaterals and 6-node triangles with named groups, from a generator, a file or arrays."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Checks of what a generator is given: each names the argument, its value and what is allowed."""
+"""Checks of the arguments of generators: each message names the argument, its value and what is allowed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What must hold of the arrays and the connectivity of a mesh before its geometry is looked at."""
+"""Checks of the arrays and the connectivity of a mesh, before those of its geometry."""
 
 from __future__ import annotations
 

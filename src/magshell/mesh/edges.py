@@ -11,14 +11,14 @@ from magshell.arrays import AnyArray, IntArray
 SIDES = np.array([[0, 1, 4], [1, 2, 5], [2, 3, 6], [3, 0, 7]])
 """Local node numbers (end, end, middle) of the four sides, walked counter-clockwise."""
 COLLAPSED = 2
-"""The side that a triangle has not: its corners 3 and 4 are one node."""
+"""The side that a triangle lacks: its corners 3 and 4 are one node."""
 
 
 class Edges(NamedTuple):
     """Sides of the elements and the edges they lie on.
 
     Side number `4 e + s` is side `s` of element `e`. Two sides lie on one edge when they have the same two ends. The
-    side that a triangle has not is there too, with one node in all three places, on an edge that is none.
+    side that a triangle lacks is listed too, with one node in all three places, on an edge of zero length.
     """
 
     sides: IntArray
@@ -28,11 +28,11 @@ class Edges(NamedTuple):
     first_side: IntArray
     """(edges,): the lowest side number on the edge."""
     sharing: IntArray
-    """(edges,): number of sides on the edge; 0 where it is none."""
+    """(edges,): number of sides on the edge; 0 if it has zero length."""
 
     @property
     def real(self) -> IntArray:
-        """The edges that are some: end, end, middle, (k, 3), in rising order of their keys."""
+        """Edges of non-zero length: end, end, middle, (k, 3), in rising order of their keys."""
         return self.sides[self.first_side[self.sharing > 0]]
 
     @property

@@ -21,7 +21,7 @@ DRAWINGS = tuple(READERS)
 
 @dataclass(frozen=True)
 class Wishes:
-    """What is asked for; which of it makes sense depends on the file.
+    """Options for a file; which of them make sense depends on its kind.
 
     Attributes
     ----------

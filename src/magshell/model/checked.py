@@ -1,4 +1,4 @@
-"""Checks of what a shell is made of, before anything is made of it."""
+"""Checks of the materials and numbers that a shell is made of."""
 
 from __future__ import annotations
 

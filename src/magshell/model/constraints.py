@@ -151,7 +151,7 @@ def _check_carried(places: Places, members: IntArray, condition: Condition) -> N
 def _orthonormal(
     where: str, field: str, wanted: list[tuple[FloatArray, FloatArray, str]]
 ) -> tuple[FloatArray, FloatArray]:
-    """Orthonormal directions and their values, by stage, that say the same as all conditions of one node's field."""
+    """Orthonormal directions and their values, by stage, equivalent to all conditions of one node's field."""
     base: list[FloatArray] = []
     values: list[FloatArray] = []
     for direction, wanted_value, group in wanted:

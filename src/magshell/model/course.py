@@ -1,7 +1,7 @@
 """The loading along the path: field, loads and held values against the load factor of a stage.
 
 Multipliers, places and angles of the field (`magshell.magnetics.fields`), multipliers of loads and held values vary
-straight with the load factor s from the start of a stage to its end. A uniform field B = h R(α) B0, with multiplier h
+linearly with the load factor s from the start of a stage to its end. A uniform field B = h R(α) B0, with multiplier h
 and R(α) a turn about its axis a, then varies as dB/ds = h' R(α) B0 + α' a × B: it turns at constant magnitude where
 h' = 0.
 """
@@ -51,7 +51,7 @@ class Loading(NamedTuple):
 
 
 class Amounts(NamedTuple):
-    """What varies straight within a stage: amounts of the field, multipliers of loads, held values."""
+    """What varies linearly within a stage: amounts of the field, multipliers of loads, held values."""
 
     drives: FloatArray
     loads: FloatArray
@@ -72,7 +72,7 @@ class Course(NamedTuple):
     start, end : Amounts
         At load factors 0 and 1.
     centre : ndarray, shape (3,)
-        Where a field that varies is told, m.
+        Where the flux density of a field that varies is reported, m.
     """
 
     stage: Stage

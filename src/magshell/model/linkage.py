@@ -1,4 +1,4 @@
-"""Pieces of a shell that free hinges let turn although its supports hold it, found before any solve."""
+"""Pieces of a shell that can turn about free hinges although the supports hold the shell, found before any solve."""
 
 from __future__ import annotations
 

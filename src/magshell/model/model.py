@@ -20,6 +20,7 @@ from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.model import coupling_limit, doubts, symmetry
 from magshell.model.constraints import Constraints, resolve
 from magshell.model.course import Amounts, Course, Loading
+from magshell.model.doubts.mesh_error import expected_error
 from magshell.model.elastic import Anchored, ElasticSupport, check_names, reaction_name
 from magshell.model.hinge_springs import hinge_springs
 from magshell.model.linkage import check_linkage
@@ -163,8 +164,17 @@ class Model:
         return str(drawing("model_html")(self))
 
     def doubts(self) -> list[str]:
-        """Sentences, each of a slip that the model may have, as `magshell check` says them; empty: none is found."""
+        """Likely slips, a sentence each, as `magshell check` prints them; an empty list if none is found."""
         return doubts.doubts(self)
+
+    @property
+    def expected_error(self) -> float | None:
+        """Relative discretisation error of the largest displacement, by a rule of thumb (0.01: about 1 %).
+
+        None for element types that the rule does not hold for (`magshell.model.doubts.mesh_error`). It is an upper
+        estimate; to know the error, solve on a mesh with elements of half the size.
+        """
+        return expected_error(self)
 
     def _check_targets(self) -> None:
         for stage in self.stages:

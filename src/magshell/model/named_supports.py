@@ -1,10 +1,10 @@
 r"""Supports by name, and what each of them takes of the forces on what is held.
 
 Supports of one name are one: what holds a gripper's foot may be written as several supports. At a node, a support
-can exert forces in the directions that it holds, V. Where two supports hold the same direction of a node, nothing
-tells their shares apart; the one that comes first takes it, so that nothing counts twice. With W_1 = V_1 and W_k the
+can exert forces in the directions that it holds, V. Where two supports hold the same direction of a node, their
+shares cannot be told apart; the first takes it, so that nothing counts twice. With W_1 = V_1 and W_k the
 part of V_k normal to what V_k has in common with W_1 + … + W_{k-1}, a force in the sum of all V is the sum of one
-force in each W_k, in one way only:
+force in each W_k, uniquely:
 
     r = Σ r_k,      r_k = S_k r ∈ W_k.
 """

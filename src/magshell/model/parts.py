@@ -24,7 +24,7 @@ REST = "shell"
 
 
 class Part(NamedTuple):
-    """Elements of one make, with all that was left out filled in.
+    """Elements with the same properties, all defaults filled in.
 
     Attributes
     ----------
@@ -79,7 +79,7 @@ class Draft(NamedTuple):
 
 
 class Made(Protocol):
-    """What is asked of a shell here."""
+    """What a shell must offer here."""
 
     @property
     def mesh(self) -> Mesh: ...

@@ -39,7 +39,7 @@ class Layer:
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """Elements of one make; what is None is as in the rest of the shell.
+    """Elements with properties of their own; what is None is as in the rest of the shell.
 
     Parameters
     ----------

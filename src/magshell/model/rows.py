@@ -41,7 +41,7 @@ Columns = TypeVar("Columns", bound=AnyArray)
 
 
 class Rows(NamedTuple):
-    """Who has which row. The nodes of the mesh come first, then rigid bodies, jumps, and the further rows of nodes.
+    """Numbering of the rows: the nodes of the mesh, then rigid bodies, jumps, and the further rows of nodes.
 
     Attributes
     ----------
@@ -317,7 +317,7 @@ class _Section(NamedTuple):
 
 
 def _sections(shell: Shell) -> tuple[IntArray, FloatArray]:
-    """What each corner is of, (corners,), and the thickness of its layers and the offset (corners, most layers + 1)."""
+    """Part of each corner (corners,), the thickness of its layers and the offset (corners, most layers + 1)."""
     count, rest = len(shell.mesh.elements), shell.element.rest_nodes
     most = max(len(part.layers) for part in shell.parts)
     kind, measures = np.zeros((count, rest), dtype=np.int64), np.zeros((count, rest, most + 1))

@@ -55,7 +55,7 @@ class Shell:
         False: the classical shell of seven parameters (u, w, φ). The materials' coupling_modulus and length_scale must
         then be 0, only `DeformationGradientEnergy` can couple a field to it, and there are no layers.
     regions : sequence of Region, optional
-        Elements that are of another make.
+        Elements with other properties.
     layers : sequence of Layer, optional
         From the bottom (the side that the normal points away from) to the top, in place of thickness, material and
         remanence.
@@ -156,7 +156,7 @@ class Shell:
 
     @cached_property
     def parts(self) -> tuple[Part, ...]:
-        """The shell by parts of one make, the elements in no region first: together they hold every element once.
+        """Parts of equal properties, the elements in no region first: together they hold every element once.
 
         Raises
         ------

@@ -40,7 +40,7 @@ class Plane(NamedTuple):
 
 
 class Mirrored(Protocol):
-    """What is asked of a model here."""
+    """What a model must offer here."""
 
     @property
     def shell(self) -> Shell: ...
@@ -112,7 +112,7 @@ def _of_place(mesh: Mesh, plane: Plane) -> Iterator[str]:
 
 
 def _of_field(model: Mirrored, plane: Plane) -> Iterator[str]:
-    """A field that is neither in the plane nor normal to it, or now this and now that."""
+    """A field that is neither in the plane nor normal to it, or that changes between the two."""
     if not model.shell.magnetised or remanence_sign(model, plane) is not None:
         return
     several = len(model.stages) > 1

@@ -1,7 +1,7 @@
 """Thickness that varies over the mid-surface: by a function, along a direction, from a table.
 
 A `Thickness` is a callable that takes the mesh and points of each of its elements, shape (elements, points, 3), and
-gives the thickness there, shape (elements, points), m. A point that nobody asks for is NaN, and so may its thickness
+gives the thickness there, shape (elements, points), m. Points that are not needed are NaN, and so may their thickness
 be. Continuous ones taper across the edges of elements; stepped ones are constant in each element.
 """
 
@@ -174,8 +174,8 @@ def from_file(
     Raises
     ------
     InputError
-        No such file or column; a line with a number that is none; an unknown unit, or another one in a heading; a place
-        with two values; when used: neither as many rows as nodes nor as many as elements.
+        No such file or column; a line with something that is not a number; an unknown unit, or another one in a
+        heading; a place with two values; when used: neither as many rows as nodes nor as many as elements.
     """
     metre, path = factor(thickness_unit, units.LENGTH), pathlib.Path(file)
     wanted = Columns(("thickness",), units.LENGTH, thickness_unit, "thickness_unit")

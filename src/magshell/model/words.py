@@ -10,7 +10,7 @@ from magshell.units import LENGTH, show
 
 
 def name_of(part: Part) -> str:
-    """Its region, or that it is the rest."""
+    """Name of its region, or 'rest'."""
     return "rest" if part.name == REST else part.name
 
 

@@ -1,1 +1,1 @@
-"""What a solve leaves behind: histories, summaries, files for ParaView and pictures."""
+"""Output of a solve: histories, summaries, files for ParaView and pictures."""

@@ -1,4 +1,4 @@
-"""Archives of NumPy arrays (`.npz`) from anybody: nothing is unpacked that is larger than the file itself."""
+"""Archives of NumPy arrays (`.npz`) of unknown origin: nothing is unpacked that is larger than the file itself."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ HEADER = 10_000
 
 
 class Unfit(ValueError):
-    """An archive that magshell has not written as it is; the message says why."""
+    """An archive that magshell cannot have written; the message says why."""
 
 
 def read_arrays(file: pathlib.Path, most: int) -> dict[str, AnyArray]:

@@ -27,7 +27,7 @@ SHOWN = 0.15
 
 
 def require_free(directory: str | os.PathLike[str]) -> None:
-    """Refuse a folder in which somebody's own files would be replaced or removed.
+    """Refuse a folder in which files that no run has made would be replaced or removed.
 
     Raises
     ------

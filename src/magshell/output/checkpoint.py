@@ -1,4 +1,4 @@
-"""`checkpoint/step-0007.npz`: one file per converged step, with all that going on from it needs.
+"""`checkpoint/step-0007.npz`: one file per converged step, with all that is needed to continue from it.
 
 The files are zipped NumPy arrays without pickles; docs/results.md lists them. All files of a folder together are the
 path; a file alone is its own step, so writing it costs the same however long the path is.
@@ -77,7 +77,7 @@ class Origin(NamedTuple):
 
 
 class CheckpointWriter(Observer):
-    """Write every converged step before anyone else is told of it, so that it outlives whatever happens next.
+    """Write every converged step before the other observers are told of it.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def step_files(directory: str | os.PathLike[str]) -> list[pathlib.Path]:
 
 
 def forget(directory: str | os.PathLike[str]) -> None:
-    """Remove the steps of a results folder, the last first: what is left is a path whenever this is broken off."""
+    """Remove the steps of a results folder, the last first, so that what is left at an interruption is still a path."""
     with naming(pathlib.Path(directory, FOLDER)):
         for file in reversed(step_files(directory)):
             file.unlink()
@@ -220,7 +220,7 @@ def _digest(arrays: Mapping[str, np.ndarray]) -> str:
 
 
 def _check(arrays: Mapping[str, np.ndarray]) -> None:
-    """Refuse numbers that are none, and those that somebody has changed (files of magshell 0.1.0 have no digest)."""
+    """Refuse values that are not finite or were changed (files of magshell 0.1.0 have no digest)."""
     for name, values in arrays.items():
         if values.dtype.kind not in "biufU":
             raise Unfit(f"{name} is of the type {values.dtype}")

@@ -60,7 +60,7 @@ class Terms(NamedTuple):
 
 
 class Mitres(NamedTuple):
-    """Terms for points of the faces, for those who sum them themselves.
+    """Terms for points of the faces, for callers that sum them themselves.
 
     Attributes
     ----------

@@ -19,8 +19,8 @@ NAME = ".lock"
 def alone(directory: pathlib.Path) -> Iterator[None]:
     """Hold a results folder.
 
-    The operating system takes the lock back however the process ends, so a killed run never stands in the way of the
-    next. Where a file system (or Windows) has no locks, there is none.
+    The operating system releases the lock however the process ends, so a killed run never blocks the next. Where a file
+    system (or Windows) has no locks, there is none.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What is set on the part in a picture of the problem: arrows, posts, balls, each with its name for the legend."""
+"""Marks on the part in a picture of the problem: arrows, posts, balls, each with its name for the legend."""
 
 from __future__ import annotations
 

@@ -66,7 +66,7 @@ def path_html(path: Path) -> str:
 
 
 def buckling_html(buckling: Buckling) -> str:
-    """The first modes; load factor and field of each, and what speaks against them."""
+    """The first modes; load factor and field of each, and doubts about them."""
     picture = _picture(lambda: _modes_figure(buckling)) if buckling.modes else ""
     rows = [(f"mode {mode.number}", _multiplier(mode)) for mode in buckling.modes]
     return _page("Buckling", picture, rows, buckling.doubts)

@@ -1,7 +1,7 @@
 """Whether this machine can draw in three dimensions without a screen.
 
-VTK ends the process with a segmentation fault where it finds no way to draw, so the question is put to a
-process that may die.
+VTK ends the process with a segmentation fault where it finds no way to draw, so a trial picture is drawn in a process
+of its own.
 """
 
 from __future__ import annotations

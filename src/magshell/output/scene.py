@@ -90,7 +90,7 @@ def axes_from(camera: ArrayLike) -> FloatArray:
 
 
 def best_axes(points: FloatArray) -> FloatArray:
-    """The view, of a few from the front and above, in which these points spread over most of the picture."""
+    """The view from the front and above, of a few candidates, in which these points fill most of the picture."""
 
     def spread(axes: FloatArray) -> float:
         return float(np.linalg.det(np.cov((points @ axes[:2].T).T)))

@@ -1,6 +1,6 @@
 """The picture before any solve: the undeformed part with its remanence, field, supports, loads and probes.
 
-What is drawn in space is made in `marks.py`; here it is rendered, lettered and explained beside.
+The marks in space are made in `marks.py`; here they are rendered, labelled and explained in a legend.
 """
 
 from __future__ import annotations

@@ -205,7 +205,7 @@ class Hull:
         return np.concatenate([flat, flat, on_walls, on_walls])
 
     def nodal(self, rows: IntArray) -> Nodal:
-        """The hull as elements, for those who place its nodes themselves, with `rows` (elements, 8) of the mesh."""
+        """The hull as elements, for callers that place its nodes themselves, with `rows` (elements, 8) of the mesh."""
         count, own = len(self._mesh.elements), self._nodes
         below = np.where(self._mesh.triangles[:, None], own[:, TRIANGLE_UPSIDE_DOWN], own[:, UPSIDE_DOWN]) + own.size
         start, end, middle = self._walls.T

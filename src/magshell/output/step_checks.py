@@ -1,4 +1,4 @@
-"""Whether a step that was read can be one of a model's path: results folders may come from anybody."""
+"""Whether a step that was read can be one of a model's path: results folders may be of unknown origin."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def most_bytes(model: Model) -> int:
 
 
 def fault_of(waypoint: Waypoint, before: Waypoint | None, model: Model) -> str | None:
-    """What no step of a model has, in a few words; None: nothing of that kind.
+    """Fault that no step of the model can have, in a few words; None if there is none.
 
     Parameters
     ----------

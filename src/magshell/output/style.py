@@ -1,4 +1,4 @@
-"""The house style of pictures, and how a picture leaves."""
+"""The common style of pictures, and how they are written or returned."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def compact_png(figure: Figure) -> bytes:
 
 
 def said() -> PngInfo:
-    """What every picture says: that it was made here."""
+    """Metadata of every picture: that magshell made it."""
     from PIL.PngImagePlugin import PngInfo
 
     says = PngInfo()
@@ -66,6 +66,6 @@ def said() -> PngInfo:
 
 
 def is_ours(file: pathlib.Path) -> bool:
-    """Whether a picture says that it was made here."""
+    """Whether the metadata of a picture say that magshell made it."""
     with open(file, "rb") as opened:
         return MADE_BY.encode() in opened.read(1000)

@@ -24,7 +24,7 @@ MOST_BYTES = 16 * 2**20
 
 
 class SummaryWriter(Observer):
-    """Keep `summary.json` true while a run goes on: not converged, with the reason `running`.
+    """Keep `summary.json` up to date during a run: not converged, with the reason `running`.
 
     Parameters
     ----------

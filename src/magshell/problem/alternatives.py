@@ -1,4 +1,4 @@
-"""What follows `--set`: the values that a key of a problem file is to take, one after the other.
+"""Values that `--set` gives to a key of a problem file, one after the other.
 
 `KEY=VALUES`, where VALUES is a list of quantities, numbers, names, true and false ("0.4,0.8 mm": a number without a
 unit takes that of the next one that has one), a range "first:last:count" ("0 mT:50 mT:11"), or lists and tables as

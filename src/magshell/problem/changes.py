@@ -167,7 +167,7 @@ def _scaled(vector: list[Any], value: Value) -> list[Any]:
 
 
 def _leave_out_moduli(material: Any, changes: Mapping[str, Value]) -> None:
-    """Two other moduli than the file has are given in place of its own."""
+    """Drop the moduli of the file where two others are given."""
     given = [name for name in MODULI if f"material.{name}" in changes]
     if len(given) == 2 and isinstance(material, dict):
         for name in MODULI:
@@ -176,7 +176,7 @@ def _leave_out_moduli(material: Any, changes: Mapping[str, Value]) -> None:
 
 
 def _leave_out_stops_beyond_the_end(field: Any) -> None:
-    """What cannot be read stays, for the check to say."""
+    """Stops that cannot be read stay; the check reports them."""
     try:
         stops = [(stop, quantity(stop, FLUX_DENSITY)) for stop in field["stops"]]
         vector = field["flux_density"] if "flux_density" in field else [field["magnitude"]]

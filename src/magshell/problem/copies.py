@@ -55,7 +55,7 @@ def alone(problem: Problem) -> tuple[str, dict[str, bytes]]:
 
 
 def digest(problem: Problem) -> str:
-    """Of all that the path depends on, the content of files included: that of a problem is that of its copy."""
+    """Digest of all that the path depends on, contents of files included; a problem and its copy have the same."""
     content = tomllib.loads(problem.text)
     meshed = _meshed(problem)
     if meshed is not None:

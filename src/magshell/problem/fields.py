@@ -55,7 +55,7 @@ def _positive_quantity(dimension: units.Dimension) -> BeforeValidator:
 
 
 def dimension_of(kind: Any) -> units.Dimension:
-    """Of a single quantity, one of the types below."""
+    """Dimension of a single quantity, which is one of the types below."""
     found: units.Dimension = get_args(kind)[1].func.keywords["dimension"]
     return found
 

@@ -17,6 +17,7 @@ from magshell.mesh.quality import worst
 from magshell.model import symmetry
 from magshell.model.doubts.figures import Figures, Whole, figures_of
 from magshell.model.doubts.loads import strength
+from magshell.model.doubts.mesh_error import in_words
 from magshell.model.elastic import ElasticSupport
 from magshell.model.repeated import Periodic
 from magshell.model.support import Support
@@ -42,16 +43,16 @@ from magshell.wording import counted, quantity
 
 @dataclass(frozen=True)
 class Report:
-    """What `magshell check` tells.
+    """What `magshell check` prints.
 
     Attributes
     ----------
     sections : dict of str to list of (str, str)
         Label and text of every line, by section.
     warnings : list of str
-        What smells of a slip.
+        Likely slips.
     notes : list of str
-        What is worth knowing besides.
+        Further remarks.
     """
 
     sections: dict[str, list[tuple[str, str]]]
@@ -130,6 +131,7 @@ def _mesh(problem: Problem, extent: float) -> Iterator[tuple[str, str]]:
         yield f"X{axis + 1}", " to ".join(span)
     yield "worst corner", _worst(quality["scaled_jacobian"], "scaled Jacobian, 1 is best")
     yield "worst aspect ratio", _worst(quality["aspect_ratio"], "longest over shortest side")
+    yield "expected error", in_words(problem.model.expected_error)
     yield "groups", ", ".join(mesh.groups) or "none"
 
 
@@ -282,7 +284,7 @@ def _coordinate(value: float, extent: float) -> str:
 
 
 def _doubts(problem: Problem, figures: Whole) -> Iterator[str]:
-    """What smells of a slip in the model, and what only its file shows."""
+    """Likely slips of the model, and those that only its file shows."""
     yield from problem.model.doubts()
     yield from _other_thickness(problem, figures)
     yield from region_report.doubts(problem)

@@ -31,7 +31,7 @@ def other_half(problem: Problem, plane: Plane) -> str:
 
 
 def doubts(problem: Problem) -> Iterator[str]:
-    """What the remanence of the whole part breaks of the mirror planes."""
+    """Mirror planes that the remanence of the whole part breaks."""
     entries, model = problem.file.remanence, problem.model
     if model.shell.overall_remanence is not model.shell.remanence:
         return

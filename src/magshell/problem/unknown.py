@@ -1,4 +1,4 @@
-"""Words for what a problem file cannot say, or says in the wrong place or form."""
+"""Messages for what a problem file cannot express, or has in the wrong place or form."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ _ONE_ONLY = {
 
 
 def unknown_key(key: str, known: Sequence[str], at_the_top: bool) -> str:
-    """What is said of a key that a table does not know."""
+    """Message for a key that a table does not have."""
     near = nearest(key, known)
     if near is None and (absent := nearest(key, ABSENT)):
         return f"is an unknown key: {ABSENT[absent]}"
@@ -62,7 +62,7 @@ def unknown_key(key: str, known: Sequence[str], at_the_top: bool) -> str:
 
 
 def not_a_table(place: str, given: object) -> str:
-    """What is said where a table is expected, by its place in the file."""
+    """Message where a table is expected, by its place in the file."""
     if isinstance(given, list) and place in _ONE_ONLY:
         return f"is a list, [[{place}]]; there is one [{place}] only{_ONE_ONLY[place]}"
     if "." not in place and "[" not in place:

@@ -1,4 +1,4 @@
-"""What `magshell reproduce` shows while it runs: the bars of all runs on a terminal, lines elsewhere."""
+"""Display of `magshell reproduce`: the bars of all runs on a terminal, lines elsewhere."""
 
 from __future__ import annotations
 

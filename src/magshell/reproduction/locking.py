@@ -1,4 +1,4 @@
-"""The paper's figure on the thickness stretch: what leaving it out does to the strips."""
+"""The paper's figure on the thickness stretch: the strips with it, without it and with plane stress."""
 
 from __future__ import annotations
 

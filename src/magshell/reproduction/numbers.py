@@ -1,4 +1,4 @@
-"""The numbers of each example beside the paper's; what differs by more than one per cent says why, with a number."""
+"""The numbers of each example beside the paper's; differences of more than one per cent are explained with a number."""
 
 from __future__ import annotations
 

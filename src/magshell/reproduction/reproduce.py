@@ -170,7 +170,7 @@ def _figures(example: Example) -> Iterator[tuple[str, str, Callable[[Example, Ma
 
 
 def require_free(directory: pathlib.Path) -> None:
-    """Refuse a folder in which somebody's own files would be replaced or removed.
+    """Refuse a folder in which files that no run has made would be replaced or removed.
 
     Raises
     ------

@@ -141,7 +141,7 @@ def _prepare(messages: Any, stop: Any) -> None:
 
 
 class _Reporter(Observer):
-    """Tells the parent how far a run is, and ends it when the parent has had enough."""
+    """Tells the parent how far a run is, and ends it when the parent asks for it."""
 
     def __init__(self, name: str) -> None:
         self._name = name

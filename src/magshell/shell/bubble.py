@@ -1,4 +1,4 @@
-r"""What holds the bubble of u, and the turning field of triangles, by themselves.
+r"""Stabilisation of the bubble of u and of the turning field of triangles.
 
 Reduced integration does not see one combination of the bubble with ξ² and η², that of 3ξ²η² - ξ² - η²: its derivatives
 vanish at the 2 × 2 points. It is held by an energy of the bubble's vector α (times ½√A, the amplitude) on the current

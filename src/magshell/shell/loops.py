@@ -314,5 +314,5 @@ def level_stretches(body: Body, state: State, field: FloatArray, zeta: FloatArra
 
 
 def are_compiled() -> bool:
-    """Whether the loops wait in the cache: then nothing that a solve may still compile takes long."""
+    """Whether the loops are in the cache: nothing else that a solve may compile takes long."""
     return fill.is_compiled() and predict_stresses.is_compiled()

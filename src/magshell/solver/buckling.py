@@ -1,6 +1,6 @@
 r"""Linear buckling: where the tangent along the linear path is singular.
 
-From the state at the start of the last stage the path is taken for straight: displacements *and* stresses grow in
+From the state at the start of the last stage the path is taken to be straight: displacements *and* stresses grow in
 proportion to the load factor t, by the increment v' = K⁻¹ q per load factor. The mixed tangent along it
 (`linear_path.py`) is singular at the multipliers,
 

@@ -16,8 +16,8 @@ Three things end a path other than the physics of the body:
 * *An element turned inside out*, where det F is far from one at its points already.
 
 Each is measured in the last state and where the load factor turned first, since the states after that point are not
-those that a growing load leads to; the worse of the two counts. Only what stands out is named as a cause; where nothing
-does, the figures are told.
+those that a growing load leads to; the worse of the two counts. Only measures beyond their bounds are named as causes;
+if none is, the figures are given.
 """
 
 from __future__ import annotations

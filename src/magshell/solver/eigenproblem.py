@@ -1,4 +1,4 @@
-r"""The nonlinear eigenproblem K(s) φ = 0: the real s nearest to 0, none of them passed.
+r"""The nonlinear eigenproblem K(s) φ = 0: the real s nearest to 0, without missing any.
 
 **Guesses.** About s = 0 the problem is taken for a quadratic one, K(s) ≈ K0 + s K1 + s² K2, with the central
 differences of K at ±1 (exact where K is quadratic). With μ = 1/s it reads

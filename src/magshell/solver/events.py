@@ -1,4 +1,4 @@
-"""What a solve tells those who watch it: files, progress and pictures hang here, not inside Newton."""
+"""Events of a solve, for observers: files, progress and pictures are attached here, not inside the solver."""
 
 from __future__ import annotations
 

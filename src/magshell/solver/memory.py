@@ -1,4 +1,4 @@
-"""Memory that a solve will need, told before it is begun, and what the machine has.
+"""Memory that a solve will need, estimated before it starts, and memory that is free.
 
 Nearly all of it are the factors of the tangent. Their entries are counted, not guessed: the symbolic phase of the
 multifrontal solver, on nodes of so many unknowns.

@@ -1,4 +1,4 @@
-"""A path from its waypoints, as the solve that made them left it."""
+"""Restores a path from its waypoints."""
 
 from __future__ import annotations
 

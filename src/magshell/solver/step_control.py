@@ -1,7 +1,7 @@
 """How long the next step is, and when steps have become too short or too many.
 
-Nothing here knows what a step is a step of: a length, or a time. All values are immutable; each outcome of a step gives
-the control of the next one.
+It does not matter here whether a step is one of length or of time. All values are immutable; each outcome of a step
+gives the control of the next one.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""One cell of a sweep, solved in whatever process it was sent to."""
+"""One cell of a sweep, solved in the process that it was sent to."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class StopWhenAsked(Observer):
 
 
 def solve_cell(name: str, text: str, folder: str, directory: str, stop: str) -> Outcome:
-    """Solve a problem into a folder of results; what went wrong is told, not raised.
+    """Solve a problem into a results folder; errors are returned in the outcome, not raised.
 
     Parameters
     ----------

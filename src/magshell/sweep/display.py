@@ -1,4 +1,4 @@
-"""What a sweep shows while it runs: one bar on a terminal, a line for each cell elsewhere."""
+"""Display of a running sweep: one bar on a terminal, a line for each cell elsewhere."""
 
 from __future__ import annotations
 

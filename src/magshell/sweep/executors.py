@@ -36,7 +36,7 @@ class Workers(Protocol):
         """Call a function there."""
 
     def close(self) -> None:
-        """Let go of it; what has not begun is dropped."""
+        """Shut down; cells that have not begun are dropped."""
 
 
 class LocalWorkers:
@@ -144,7 +144,7 @@ class DaskWorkers:
 
     @contextlib.contextmanager
     def _there(self) -> Iterator[None]:
-        """Of a scheduler that is gone Dask says so in many ways."""
+        """Translate the many errors of Dask for a scheduler that is gone."""
         try:
             yield
         except Exception as error:

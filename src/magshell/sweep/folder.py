@@ -1,4 +1,4 @@
-"""The folder of a sweep: what it was asked for, and where its cells are.
+"""The folder of a sweep: its definition, and where its cells are.
 
 `sweep.toml` says how to go on, `problem.toml` is the file that is varied, `cells/0001/` and so on are folders of
 results, `sweep.csv` is the table, `sweep-history.csv` has all steps, `sweep.png` is a picture.

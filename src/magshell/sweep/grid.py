@@ -36,9 +36,9 @@ class Cell:
     undeformed : bool
         Nothing acts on the shell, so there is nothing to solve.
     doubts : tuple of str
-        What breaks its mirror planes, and where the field's couple is too strong.
+        Broken mirror planes, and a couple of the field that is too strong.
     note : str or None
-        What its file leaves to defaults that were others.
+        Note on defaults of its file that have changed.
     """
 
     number: int

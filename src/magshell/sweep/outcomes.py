@@ -53,7 +53,7 @@ def undeformed(cell: Cell) -> Outcome:
 
 
 def outcome_in(directory: pathlib.Path) -> Outcome:
-    """What the results in the folder of a cell say; WAITING where there are none, or none that can be read."""
+    """The outcome by the results in the folder of a cell; WAITING where there are none, or none that can be read."""
     try:
         summary = json.loads(read_at_most(directory / NAME, MOST_BYTES))
         converged, reason = summary["converged"], str(summary["reason"])

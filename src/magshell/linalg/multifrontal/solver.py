@@ -38,13 +38,13 @@ class Analysis(NamedTuple):
 
 
 class Unstable(ArithmeticError):
-    """The factors without row exchanges are no good."""
+    """The factors without row exchanges are too inaccurate."""
 
 
 class MultifrontalFactors(ScaledFactors):
     """LU, or LDLᵀ if the matrix is symmetric, without row exchanges.
 
-    Where that is unstable, which the backward error of every solution shows, SuperLU takes over.
+    Where that is unstable, as the backward error of every solution shows, SuperLU takes over.
     """
 
     def __init__(self, analysis: Analysis, scaled: Scaled, stores: list[elimination.Factors]) -> None:

@@ -1,6 +1,6 @@
 """What a magnetic field is to the equations: B and its derivatives at points, for given amounts of what drives it.
 
-A field depends on *amounts*: multipliers, places and angles that vary straight within a stage of the path. A field says
+A field depends on *amounts*: multipliers, places and angles that vary linearly within a stage of the path. A field says
 what they are at the end of each stage (`ends`), its values for any of them (`at`), and the derivative of the values
 along a change of them (`rate`), at fixed points.
 """

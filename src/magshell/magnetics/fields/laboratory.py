@@ -74,7 +74,7 @@ class CoilSystem(Field):
         From currents, A, to B1, B2, B3 at the centre, T, and ∂B1/∂x1, ∂B1/∂x2, ∂B1/∂x3, ∂B2/∂x2, ∂B2/∂x3, T/m. With
         three rows the field is uniform.
     currents : array_like, shape (stages, coils)
-        At the end of each stage, A; before the first they are 0, and straight in between.
+        At the end of each stage, A; before the first they are 0, and linear in between.
     centre : array_like, shape (3,)
         m.
     name : str
@@ -136,7 +136,7 @@ class CoilSystem(Field):
     def currents_for(self, flux_density: ArrayLike, gradient: ArrayLike | None = None) -> FloatArray:
         """The least currents (coils,), A, that make a field (3,), T, and a gradient (3, 3), T/m, at the centre.
 
-        Without a gradient it is left as it comes.
+        If no gradient is given, it is not controlled.
 
         Raises
         ------

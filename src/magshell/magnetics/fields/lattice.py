@@ -1,4 +1,4 @@
-"""A field interpolated by quintic splines on a lattice, so that its values cost the same however many its sources.
+"""A field interpolated by quintic splines on a lattice, so that its values cost the same for any number of sources.
 
 The lattice is fixed in the frame of the sources. Blocks of `CELLS`³ cells are sampled when a point in them is first
 asked for, and each block depends on the field alone: values do not depend on what was asked before. On a block the

@@ -1,6 +1,6 @@
 """Objects of magpylib as sources of this package: what they are, where they are and how they are turned.
 
-magpylib's objects can change; what is made of them here cannot, so a model stays what it was when it was made.
+magpylib's objects are mutable; what is made of them here is not, so a model does not change after it was made.
 """
 
 from __future__ import annotations

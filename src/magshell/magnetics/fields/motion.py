@@ -29,7 +29,7 @@ DRIVES = ("multiplier", "d1", "d2", "d3", "angle")
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """Multiplier, displacement and angle at the end of each stage; straight in between.
+    """Multiplier, displacement and angle at the end of each stage; linear in between.
 
     Parameters
     ----------

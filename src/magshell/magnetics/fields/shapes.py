@@ -1,6 +1,6 @@
 """What a magnet or a coil is: its field in its own axes, where it is singular, and how it looks.
 
-A shape is a frozen dataclass that inherits from `Shape`. Its file says all there is to say of it: the keys of its table
+A shape is a frozen dataclass that inherits from `Shape`. Its file has everything about it: the keys of its table
 in problem files, what `magshell check` prints, its surface for pictures. The field comes from magpylib
 (https://magpylib.readthedocs.io), which is imported when the first value is asked for.
 """

@@ -1,7 +1,7 @@
 """Remanent flux density of the undeformed material, T, constant through the thickness.
 
 A `Remanence` is a callable that takes the mesh and points of each of its elements, shape (elements, points, 3), and
-gives the remanence there, same shape. A point that nobody asks for is NaN, and so may its remanence be.
+gives the remanence there, same shape. Points that are not needed are NaN, and so may their remanence be.
 
 * one vector: `constant`; directions of an axis: `meridional`, `circumferential`, `radial`;
 * in the surface: `tangential`, `along_curve`; turning along a coordinate: `profile`;

@@ -55,8 +55,8 @@ def from_file(
     Raises
     ------
     InputError
-        No such file; no such column; a line with a number that is none, too few or too many; an unknown unit, or
-        another one in a heading; a place with two values.
+        No such file; no such column; a line with something that is not a number, or too few or too many of them; an
+        unknown unit, or another one in a heading; a place with two values.
     """
     tesla = factor(flux_density_unit, units.REMANENCE)
     path = pathlib.Path(file)

@@ -24,7 +24,7 @@ class ByGroup:
         self._remanences = dict(remanences)
 
     def __call__(self, mesh: Mesh, points: FloatArray) -> FloatArray:
-        """The remanence at points (elements, points, 3); every part is asked at NaN outside its group."""
+        """The remanence at points (elements, points, 3); every part is evaluated at NaN outside its group."""
         return self._gathered(mesh, points, lambda remanence, asked: remanence(mesh, asked))
 
     def carried_at(self, mesh: Mesh, points: FloatArray) -> FloatArray:

@@ -79,7 +79,7 @@ class Template:
 
 
 def template(shape: Shape, magnitude: float, direction: ArrayLike) -> Remanence:
-    """What a part keeps that was magnetised by a uniform field in another shape, and released.
+    """Remanence of a part that was magnetised by a uniform field in another shape, and released.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What every remanence is, and the checks that they share."""
+"""The type of every remanence, and common checks."""
 
 from __future__ import annotations
 

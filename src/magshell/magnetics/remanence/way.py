@@ -1,4 +1,4 @@
-"""What a way to magnetise says of itself to those who write problem files."""
+"""Description of a way to magnetise for problem files."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from magshell.mesh.drawings.pieces import Piece
 GAP = 1e-4
 """Of the size of a drawing: ends closer than this are joined, unless another distance is asked for."""
 EXACT = 1e-9
-"""Of its size: closer ends are the same, and nobody need be told."""
+"""Of its size: ends closer than this are the same, without a note."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,7 +21,7 @@ SAME = 5e-4
 NEAR = 2e-4
 """Of the size: lines closer than this lie on one another."""
 WIDEST = 0.05
-"""Of the size: nobody means to close a wider gap."""
+"""Of the size: wider gaps are not meant to be closed."""
 MOST_OUTLINES = 2000
 
 

@@ -1,7 +1,7 @@
 """Calls of other programs, in a process of their own.
 
-On a damaged file they may crash, which then ends only that process. They may be told to stop, and what they print, what
-they leave behind and how they treat signals is nobody's concern.
+On a damaged file they may crash, which then ends only that process. They can be stopped, and what they print, leave
+behind or do to signals has no effect here.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Result = TypeVar("Result")
 def apart(
     function: Callable[..., Result], *arguments: object, program: str, name: str, seconds: int | None = None
 ) -> Result:
-    """What a function returns that is called in another process.
+    """Call a function in another process and return its result.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""From what a file says to a mesh: checked, turned, raised, without what is unused; and what was done to it."""
+"""From the contents of a file to a mesh: checked, turned, raised, without unused nodes; and a record of the changes."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ CONVERTED = "mm"
 IGES = (".iges", ".igs")
 """Formats in which a closed surface, as a tube, has its seam twice: the nodes there are joined."""
 DEFAULT_ELEMENTS = 800
-"""About as many elements does a mesh have whose size nobody said."""
+"""Approximate number of elements if no size is given."""
 MOST_ELEMENTS = 1_000_000
 GOOD = 0.3
 """Worst scaled Jacobian with which the first mesh is taken; quadrilaterals with a worse one are cut."""

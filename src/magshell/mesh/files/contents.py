@@ -1,4 +1,4 @@
-"""What a file says: points, elements of all kinds and groups, before it is a mesh."""
+"""Contents of a file: points, elements of all kinds and groups, before they become a mesh."""
 
 from __future__ import annotations
 

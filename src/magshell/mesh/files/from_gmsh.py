@@ -1,4 +1,4 @@
-"""What gmsh has in hand, as contents of a file."""
+"""The current model of gmsh as the contents of a file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Files that are asked for."""
+"""Checks of the files that are to be read."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def readable(path: pathlib.Path) -> None:
 
 
 def textual(path: pathlib.Path) -> None:
-    """Refuse what is no text at its beginning: gmsh may read in it for minutes.
+    """Refuse a file that does not begin with text, since gmsh may read it for minutes.
 
     Raises
     ------

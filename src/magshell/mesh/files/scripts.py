@@ -1,4 +1,4 @@
-"""gmsh's scripts (`.geo`) of which nothing but what draws a geometry is run.
+"""gmsh's scripts (`.geo`), of which only statements that draw a geometry are run.
 
 gmsh's language also runs programs, writes files and makes names of commands out of texts. A script is therefore taken
 apart into the words of that language, every statement must begin with a word that is known to be harmless or assign to
@@ -71,7 +71,7 @@ FORBIDDEN = _words(
     SystemCall
     """
 )
-"""Words that have no place anywhere: they run programs, write, read what is outside the script, or make such words."""
+"""Words that are never allowed: they run programs, write, read what is outside the script, or make such words."""
 OPTIONS = ("Mesh", "Geometry", "General")
 """Kinds of options that may be set."""
 OTHER_OPTIONS = ("PostProcessing", "Print", "Solver", "View")
@@ -233,7 +233,7 @@ def _check(tokens: list[Token], name: str) -> None:
 
 
 def _check_word(token: Token, name: str) -> None:
-    """Refuse words that have no place anywhere, and those that gmsh may cut in two."""
+    """Refuse words that are never allowed, and those that gmsh may cut in two."""
     if token.kind == "word" and token.text in FORBIDDEN:
         _refuse(name, token.line, f"says {token.text}")
     cut = next((word for word in _CONTROL if word in token.text), None)

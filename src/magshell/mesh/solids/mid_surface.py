@@ -1,4 +1,4 @@
-"""The mid-surface of a solid, whatever file it comes in."""
+"""The mid-surface of a solid from any kind of file."""
 
 from __future__ import annotations
 

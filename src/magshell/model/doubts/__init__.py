@@ -1,4 +1,4 @@
-"""What smells of a slip in a model: magnitudes that no experiment has, and what does nothing."""
+"""Likely slips in a model: implausible magnitudes, and what has no effect."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from magshell.units import ANGLE, FLUX_DENSITY, LENGTH, STRESS, show
 from magshell.wording import counted
 
 LARGE, SMALL = 1.0, 1e-5
-"""Extents, m, beyond which a shell in a magnetic field is not one of a laboratory."""
+"""Extents, m, beyond which a shell in a magnetic field is implausible."""
 STILL = 0.01
 """Bending load, or load of forces and moments, of a strip whose end turns by less than a third of a degree."""
 KEPT = 1.5
@@ -26,7 +26,7 @@ KEPT = 1.5
 
 
 def doubts(model: Asked) -> list[str]:
-    """Sentences, each of a slip that the model may have; an empty list: none is found."""
+    """Likely slips, a sentence each; an empty list if none is found."""
     return list(_doubts(model))
 
 

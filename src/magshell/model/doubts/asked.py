@@ -1,4 +1,4 @@
-"""What is asked of a model to find what smells of a slip in it."""
+"""What a model must offer to be checked for likely slips."""
 
 from __future__ import annotations
 

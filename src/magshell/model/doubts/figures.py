@@ -1,4 +1,4 @@
-"""Magnitudes of a model: what `magshell check` says and doubts."""
+"""Magnitudes of a model that `magshell check` reports and judges."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How strong the mechanical loads of a model are, and magnitudes that no experiment has."""
+"""How strong the mechanical loads of a model are; implausible magnitudes."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def strength(model: Asked, figures: Whole) -> Strength:
 
 
 def doubts(model: Asked, strong: Strength) -> Iterator[str]:
-    """Magnitudes that no experiment has, most often a slip of units."""
+    """Implausible magnitudes, most often a slip of units."""
     densities = [layer.density for part in model.shell.parts for layer in part.layers]
     known = sorted({density for density in densities if density is not None})
     for density in known:

@@ -1,4 +1,4 @@
-"""Forces that stay what they are."""
+"""Dead loads: constant magnitude and direction."""
 
 from __future__ import annotations
 

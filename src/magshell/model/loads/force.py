@@ -1,7 +1,7 @@
 r"""A force with a total over a group, dead or turning with the micro-rotation.
 
 One that follows is R̃_I F_I at node I, with the node's share F_I of the total. A spin ϑ changes it by ϑ × R̃_I F_I, so
-that the tangent gets [R̃_I F_I]× at (u, ω). No potential has that: nothing of it is at (ω, u).
+that the tangent gets [R̃_I F_I]× at (u, ω). This has no potential, since there is no transposed block at (ω, u).
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """What a load is: as a user writes it, and resolved on the mesh.
 
-A load is a frozen dataclass that inherits from `Load`. Its file says all there is to say of it: the keys of its table
-in problem files, what `magshell check` prints, how it is drawn. What it leaves out follows from its forces.
+A load is a frozen dataclass that inherits from `Load`. Its file has everything about it: the keys of its table
+in problem files, what `magshell check` prints, how it is drawn. Defaults follow from its forces.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Applied(Protocol):
 
     @property
     def conservative(self) -> bool:
-        """Whether its work depends on the states at both ends only, whatever holds the shell."""
+        """True if the load has a potential under any supports."""
 
     @property
     def pairs(self) -> Sequence[Pairs]:
@@ -61,8 +61,7 @@ class Applied(Protocol):
         """Minus the derivative of the forces over the increments, for each of `pairs` (n, 3, 3), global axes.
 
         Rotations move by spins ϑ, R̃ -> exp(ϑ) R̃, and couples are those on the spins of the new state: a constant
-        couple has no derivative. That elements differentiate otherwise is the equations' affair
-        (`magshell.equations`).
+        couple has no derivative. Elements differentiate otherwise, which `magshell.equations` takes into account.
         """
 
 

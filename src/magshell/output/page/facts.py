@@ -1,4 +1,4 @@
-"""What a page says of the problem in a line: from the model and the path alone."""
+"""Facts on the problem in the head of a page, from the model and the path alone."""
 
 from __future__ import annotations
 

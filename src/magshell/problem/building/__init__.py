@@ -82,7 +82,7 @@ def build(file: ProblemFile, source: str, text: str = "", folder: pathlib.Path =
     Raises
     ------
     InputError
-        What the parts are wrong about together, with file and key.
+        The parts do not fit together; located by file and key.
     """
     with at(source):
         mesh = build_mesh(file.mesh, folder)

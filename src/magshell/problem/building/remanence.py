@@ -43,7 +43,7 @@ def build_remanence(
 
 @contextmanager
 def _at_entry(key: str, number: int) -> Iterator[None]:
-    """What the entry is wrong about, located; the words of the remanence itself begin with its name already."""
+    """Locate input errors of an entry; those of the remanence itself already begin with its name."""
     try:
         yield
     except InputError as error:
@@ -52,7 +52,7 @@ def _at_entry(key: str, number: int) -> Iterator[None]:
 
 
 def _tried(one: Remanence, mesh: Mesh) -> Remanence:
-    """The remanence, once it has been asked at the middle of every element."""
+    """The remanence, after it was evaluated at the middle of every element."""
     one(mesh, centres(mesh.points, mesh.elements)[:, None])
     return one
 

@@ -70,7 +70,7 @@ class LayerTable(Table):
 
 
 class RegionTable(Table):
-    """Elements of one make."""
+    """Elements with properties of their own."""
 
     group: f.Names
     thickness: Thickness | None = None

@@ -1,4 +1,4 @@
-"""What an element type is: declared data that the kernels are generic over."""
+"""Element types: declared data over which the kernels are generic."""
 
 from __future__ import annotations
 
