@@ -10,6 +10,7 @@ import pytest
 from battery import COUPLINGS, MATERIAL, example, name_of
 
 import magshell as ms
+from magshell.magnetics.fields import Dipole
 from magshell.mesh import Mesh, rectangle
 from magshell.model import reflection
 from magshell.model.symmetry import MIRRORED, REVERSED, broken, planes, remanence_sign
@@ -30,7 +31,7 @@ PLANE = ms.SymmetryPlane("left", (2.0, 0.0, 0.0))
 def model(mesh, supports, field=(0.0, 0.0, 0.01), remanence=None, coupling=None, loads=(), density=None, **more):
     remanence = ms.remanence.constant(REMANENT) if remanence is None else remanence
     shell = ms.Shell(mesh, 0.2, example(MATERIAL), remanence, density=density)
-    field = field if isinstance(field, ms.UniformField) else ms.UniformField(field)
+    field = ms.UniformField(field) if isinstance(field, tuple) else field
     return ms.Model(shell, supports, field, coupling, loads=loads, **more)
 
 
@@ -58,6 +59,29 @@ def test_half_is_half_of_the_whole(coupling, field, sign):
     assert np.abs(small.u - large.u[at]).max() < 1e-7 * scale
     assert np.abs(small.w - large.w[at]).max() < 1e-7 * np.abs(small.w).max()
     assert np.abs(small.u - other.u[at]).max() > 0.1 * scale
+
+
+VARYING = {
+    "its own image": (lambda x, y, z: (-x, 0.0 * y, 1.0 + z), MIRRORED),
+    "the opposite of its image": (lambda x, y, z: (1.0 + z, 0.0 * y, x), REVERSED),
+    "neither": (lambda x, y, z: (1.0 + z, 0.0 * y, 1.0 + x), None),
+}
+
+
+@pytest.mark.parametrize(("function", "sign"), VARYING.values(), ids=VARYING)
+def test_field_that_varies(function, sign, caplog):
+    field = ms.FunctionField(lambda x: 0.01 * np.stack(function(*x.T), axis=1), length=1.0)
+    with caplog.at_level(logging.WARNING):
+        half = model(HALF, [ms.Clamp("right"), PLANE], field)
+    assert remanence_sign(half, planes(half)[0]) == sign
+    assert len(broken(half)) == (sign is None)
+    assert ("place its sources alike" in caplog.text) == (sign is None)
+
+
+@pytest.mark.parametrize(("x", "faults"), [(0.0, 0), (0.3, 1)])
+def test_magnet_above_the_plane_and_beside_it(x, faults):
+    above = Dipole(moment=(0.0, 0.0, 1e3), position=(x, 0.5, 3.0))
+    assert len(broken(model(HALF, [ms.Clamp("right"), PLANE], ms.MagnetField([above])))) == faults
 
 
 def test_images_of_polar_and_axial_vectors():

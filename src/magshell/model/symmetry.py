@@ -9,13 +9,13 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
-from magshell.magnetics.fields import Field, UniformField
+from magshell.magnetics.fields import Field, FieldUnknown, UniformField
 from magshell.mesh import Mesh
 from magshell.mesh.geometry import COINCIDENT
 from magshell.model import repetition
 from magshell.model.course import Course
 from magshell.model.loads import Load
-from magshell.model.reflection import angle_to_plane, in_plane, is_normal
+from magshell.model.reflection import TYPED, angle_to_plane, in_plane, is_normal, polar
 from magshell.model.shell import Shell
 from magshell.model.stages import Stage
 from magshell.model.support import Support
@@ -68,6 +68,9 @@ def remanence_sign(model: Mirrored, plane: Plane) -> int | None:
 
     Without a field or without remanence it is `MIRRORED`, and nothing depends on it.
     """
+    if not isinstance(model.field, UniformField):
+        signs = [sign for _, sign in _signs_in_space(model, plane)]
+        return MIRRORED if not signs else signs[0] if len(set(signs)) == 1 else None
     fields = [vector for _, vector in _fields(model)]
     if all(in_plane(vector, plane.normal) for vector in fields):
         return MIRRORED
@@ -117,6 +120,12 @@ def _of_field(model: Mirrored, plane: Plane) -> Iterator[str]:
         return
     several = len(model.stages) > 1
     seen: dict[int, int] = {}
+    for stage, sign in _signs_in_space(model, plane):
+        if sign is None:
+            where = f" in stage {stage + 1}" if several else ""
+            yield f"the field{where} differs beyond the plane from its image; place its sources alike. {WHOLE}"
+            return
+        seen.setdefault(sign, stage)
     for stage, vector in _fields(model):
         if in_plane(vector, plane.normal):
             seen.setdefault(MIRRORED, stage)
@@ -130,8 +139,10 @@ def _of_field(model: Mirrored, plane: Plane) -> Iterator[str]:
                 f"(mirrored and reversed). {WHOLE}"
             )
             return
+    uniform = isinstance(model.field, UniformField)
+    one, other = ("lies in the plane", "is normal to it") if uniform else ("is its own image", "the opposite of it")
     yield (
-        f"the field lies in the plane in stage {seen[MIRRORED] + 1} and is normal to it in stage {seen[REVERSED] + 1}: "
+        f"the field {one} in stage {seen[MIRRORED] + 1} and {other} in stage {seen[REVERSED] + 1}: "
         "the other half would need the mirrored remanence in the one, and the mirrored and reversed one in the other. "
         f"{WHOLE}"
     )
@@ -151,6 +162,30 @@ def _fields(model: Mirrored) -> Iterator[tuple[int, FloatArray]]:
             turn = float(np.clip(end[1] - start[1], -2.0, 2.0))
             for angle in {end[1], end[1] - 0.5 * turn, end[1] - turn}:
                 yield number, field.turned(angle)
+
+
+def _signs_in_space(model: Mirrored, plane: Plane) -> Iterator[tuple[int, int | None]]:
+    """Stage, and sign σ of B(S x) = σ S B(x) at the nodes of a field that varies; None: it has neither.
+
+    States without field, and those whose field is unknown beyond the plane, tell nothing.
+    """
+    if isinstance(model.field, UniformField):
+        return
+    points, offset = model.shell.mesh.points, float((model.shell.mesh.points[plane.nodes] @ plane.normal).mean())
+    images = polar(points, plane.normal) + 2.0 * offset * plane.normal
+    for number in range(len(model.stages)):
+        for load_factor in (0.0, 0.5, 1.0):
+            drives = model.course(number).amounts(load_factor).drives
+            try:
+                here, there = (model.field.at(drives, x, second=False).flux_density for x in (points, images))
+            except FieldUnknown:
+                continue
+            size = float(np.linalg.norm(here, axis=1).max())
+            if size > 0.0:
+                mirrored = polar(here, plane.normal)
+                off = {sign: np.linalg.norm(there - sign * mirrored, axis=1).max() for sign in (MIRRORED, REVERSED)}
+                alike = [sign for sign, gap in off.items() if gap <= 2.0 * TYPED * size]
+                yield number, (MIRRORED if alike == [MIRRORED] else REVERSED if alike else None)
 
 
 def _of_loads(model: Mirrored, plane: Plane) -> Iterator[str]:
