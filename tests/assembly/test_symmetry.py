@@ -10,7 +10,7 @@ import pytest
 from battery import COUPLINGS, MATERIAL, example, name_of
 
 import magshell as ms
-from magshell.magnetics.fields import Dipole
+from magshell.magnetics.fields import Dipole, Source
 from magshell.mesh import Mesh, rectangle
 from magshell.model import reflection
 from magshell.model.symmetry import MIRRORED, REVERSED, broken, planes, remanence_sign
@@ -80,7 +80,7 @@ def test_field_that_varies(function, sign, caplog):
 
 @pytest.mark.parametrize(("x", "faults"), [(0.0, 0), (0.3, 1)])
 def test_magnet_above_the_plane_and_beside_it(x, faults):
-    above = Dipole(moment=(0.0, 0.0, 1e3), position=(x, 0.5, 3.0))
+    above = Source(Dipole(moment=(0.0, 0.0, 1e3)), position=(x, 0.5, 3.0))
     assert len(broken(model(HALF, [ms.Clamp("right"), PLANE], ms.MagnetField([above])))) == faults
 
 
