@@ -24,9 +24,7 @@ def with_suffix(file: str | os.PathLike[str], *suffixes: str) -> pathlib.Path:
     """
     path = pathlib.Path(file)
     if path.suffix.lower() not in suffixes:
-        raise InputError(
-            f"{path}: only {' or '.join(suffixes)} can be written; name it {path.stem + suffixes[0]}"
-        )
+        raise InputError(f"{path}: only {' or '.join(suffixes)} can be written; name it {path.stem + suffixes[0]}")
     return path
 
 
