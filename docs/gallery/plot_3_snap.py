@@ -13,7 +13,7 @@ import numpy as np
 import magshell as ms
 
 # %%
-# The problem is a built-in one, and says so much itself:
+# The problem is a built-in one, with a description of its own:
 
 problem = ms.problem.load("magnetic-arch")
 problem

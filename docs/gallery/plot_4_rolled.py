@@ -2,9 +2,8 @@
 A strip rolled up
 =================
 
-No magnets: a moment at its end bends a strip to a circle. The exact solution is known, and a shell that is to be
-trusted must roll up without locking. The problem is one of those of Sze, Liu and Lo (*Finite Elem. Anal. Des.* 40,
-2004).
+No magnets: a moment at its end bends a strip to a circle. The exact solution is known, and a sound shell element must
+roll up without locking. The problem is one of those of Sze, Liu and Lo (*Finite Elem. Anal. Des.* 40, 2004).
 """
 
 import matplotlib.pyplot as plt

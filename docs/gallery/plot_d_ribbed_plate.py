@@ -3,7 +3,7 @@ A plate with ribs
 =================
 
 Three walls meet at each T-joint. One rotation carries the directors of all of them, so that moments pass from one into
-the others; nothing needs to be told. This is the built-in problem ``ribbed-plate``.
+the others; nothing needs to be specified. This is the built-in problem ``ribbed-plate``.
 """
 
 import numpy as np

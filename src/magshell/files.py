@@ -24,9 +24,7 @@ def with_suffix(file: str | os.PathLike[str], *suffixes: str) -> pathlib.Path:
     """
     path = pathlib.Path(file)
     if path.suffix.lower() not in suffixes:
-        raise InputError(
-            f"{path}: {' or '.join(suffixes)} is written here, nothing else; name it {path.stem + suffixes[0]}"
-        )
+        raise InputError(f"{path}: only {' or '.join(suffixes)} can be written; name it {path.stem + suffixes[0]}")
     return path
 
 
@@ -62,7 +60,7 @@ def refuse_to_replace(directory: pathlib.Path, names: Sequence[str]) -> None:
     """
     if names:
         listed = ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
-        raise InputError(f"{directory}: would lose {listed}, not of an earlier run; name another folder")
+        raise InputError(f"{directory}: {listed} would be lost and is not of an earlier run; name another folder")
 
 
 def first_line(file: pathlib.Path) -> str:

@@ -77,7 +77,7 @@ class ProgressDisplay(Observer):
         """Say how far the path is already."""
         self.started(path.discretisation, path.settings)
         last = path.steps[-1]
-        self._line(f"{len(path.steps) - 1} steps to {self._load(last)}{_field(last)} are there")
+        self._line(f"{len(path.steps) - 1} steps up to {self._load(last)}{_field(last)} are solved already")
         if self._live:
             self.converged(last)
 

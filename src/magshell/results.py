@@ -87,7 +87,7 @@ def read(directory: str | os.PathLike[str]) -> Results:
     try:
         path = path_through(found.model, found.settings, _waypoints(found, files, origins))
     except StepFailure as failure:
-        raise InputError(f"{folder / checkpoint.FOLDER}: its steps are no path: {failure}; run it anew") from None
+        raise InputError(f"{folder / checkpoint.FOLDER}: its steps make no path: {failure}; run it anew") from None
     fault = step_checks.fault_of_path(path)
     if fault is not None:
         number, what = fault

@@ -381,7 +381,7 @@ def test_somebodys_own_problem_is_not_overwritten(
     own = tmp_path / "problem.toml"
     own.write_text("# mine\n" + STRIP)
     assert main(["run", strip, "--out", str(tmp_path)]) == 2
-    assert_line(capsys.readouterr().err, r"would lose problem\.toml, not of an earlier run")
+    assert_line(capsys.readouterr().err, r"problem\.toml would be lost and is not of an earlier run")
     assert own.read_text() == "# mine\n" + STRIP
     assert main(["run", str(own), "--out", str(tmp_path)]) == 0
     assert own.read_text() == "# mine\n" + STRIP

@@ -183,7 +183,7 @@ def test_vtk_without_end(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     whole, count = vtk(PLATE, ".vtu", True), b'NumberOfComponents="3"'
     assert count in whole
     (folder / "endless.vtu").write_bytes(whole.replace(count, b'NumberOfComponents="9223372036854775807"'))
-    with pytest.raises(InputError, match=r"^endless.vtu: VTK finds no end in it"):
+    with pytest.raises(InputError, match=r"^endless.vtu: VTK does not finish reading it"):
         read(folder / "endless.vtu", "mm")
 
 

@@ -216,7 +216,7 @@ def test_nothing_is_unpacked_that_is_larger_than_its_file(file: Path) -> None:
     with bounded(), pytest.raises(InputError, match="is damaged"):
         read_step(file)
     file.write_bytes(content(waypoint(), ORIGIN) + bytes(10_000_000))
-    with pytest.raises(InputError, match="where at most 1000000 can be meant"):
+    with pytest.raises(InputError, match="where at most 1000000 are possible"):
         read_step(file, 1_000_000)
 
 

@@ -20,7 +20,7 @@ CLASSICAL = SOFT._replace(coupling_modulus=0.0, length_scale=0.0)
 BAD = {
     "overlap": (
         lambda: of_regions(ms.Region("outer", 1e-3), ms.Region([1, 2], 2e-3)),
-        r"^regions\[1\]: element 2 is already in the region 'outer'; one of them must give it up$",
+        r"^regions\[1\]: element 2 is already in the region 'outer'; an element has one region only$",
     ),
     "overlap of groups": (
         lambda: of_regions(ms.Region("outer", 1e-3), ms.Region(["inner", "outer"], 2e-3)),

@@ -85,7 +85,7 @@ def test_numbers_are_si(text: str, number: float, unit: str) -> None:
         ("a=1:2:2.5", "asks for '2.5' values"),
         (f"a=1:2:{MOST_VALUES + 1}", f"2 to {MOST_VALUES}"),
         ("a=1 mm:2 kPa:3", "from 'mm' to 'kPa'"),
-        ("a=0.4,0.4 mm", "'0.4 mm' stands there twice"),
+        ("a=0.4,0.4 mm", "'0.4 mm' is listed twice"),
         ("a=1:1:3", "twice"),
         ("a=[1, 2", "not a list of values as TOML writes them"),
         ("a=1e999 mm", "--set a: '1e999 mm' is not"),

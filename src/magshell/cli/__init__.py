@@ -31,7 +31,7 @@ COMMANDS = {
     "reproduce": reproduce,
 }
 
-NO_MEMORY = "the memory of this machine does not suffice; fewer elements need less"
+NO_MEMORY = "there is not enough memory on this machine; fewer elements need less"
 EXAMPLES = """
 examples:
   magshell examples                       list the built-in problems

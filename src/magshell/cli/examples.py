@@ -30,7 +30,7 @@ def run(given: argparse.Namespace) -> int:
 
     out = console()
     if given.copy is None and given.dest is not None:
-        raise InputError(f"examples: '{given.dest}' is where to copy to, but --copy NAME says nothing to copy")
+        raise InputError(f"examples: '{given.dest}' is where to copy to, but what to copy is missing: --copy NAME")
     if given.copy is None:
         width = max(map(len, examples.names()))
         for name in examples.names():

@@ -75,7 +75,7 @@ def check_numbers(points: FloatArray, elements: IntArray) -> None:
     if bad.size:
         row = ordered[bad[0]]
         raise MeshError(
-            f"Element {bad[0]} has node {row[1:][row[1:] == row[:-1]][0]} twice: its 8 nodes must differ, but for a "
+            f"Element {bad[0]} has node {row[1:][row[1:] == row[:-1]][0]} twice: its 8 nodes must differ, except in a "
             "triangle with corners a, b, c, which is the row a, b, c, c, ab, bc, c, ca, with ab the middle between a "
             "and b." + further(bad.size)
         )

@@ -129,7 +129,7 @@ def drafts_of(shell: Made) -> list[Draft]:
         if taken.size:
             raise InputError(
                 f"{where}: element {taken[0]} is already in the region '{names[owner[taken[0]]]}'; "
-                "one of them must give it up"
+                "an element has one region only"
             )
         owner[members] = number
         found.append(_draft(shell, region, names[number], where, members))

@@ -42,7 +42,7 @@ def read_arrays(file: pathlib.Path, most: int) -> dict[str, AnyArray]:
     """
     size = file.stat().st_size
     if size > most:
-        raise Unfit(f"{size} bytes, where at most {most} can be meant")
+        raise Unfit(f"{size} bytes, where at most {most} are possible")
     with zipfile.ZipFile(file) as archive:
         entries = archive.infolist()
         if any(entry.compress_type != zipfile.ZIP_STORED for entry in entries):

@@ -125,7 +125,7 @@ def value_of(data: Any) -> Value:
 def _distinct(values: Sequence[Value]) -> Sequence[Value]:
     for place, value in enumerate(values):
         if any(value.data == other.data and type(value.data) is type(other.data) for other in values[:place]):
-            raise InputError(f"{quoted(value.text)} stands there twice")
+            raise InputError(f"{quoted(value.text)} is listed twice")
     return values
 
 

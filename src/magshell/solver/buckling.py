@@ -116,7 +116,7 @@ class Buckling(NamedTuple):
                 "Follow the path (magshell run)"
             )
         if self.counted is None:
-            found.append(f"{self.path.solver_name} counts no negative pivots: a multiplier may have been passed")
+            found.append(f"{self.path.solver_name} counts no negative pivots: a multiplier may have been missed")
         elif not self.complete:
             found.append(
                 f"beyond a load factor of ±{self.counted:.6g} the negative pivots of the tangent tell of more "

@@ -288,8 +288,8 @@ class Follower:
         again = f", and {more} more time{'s' * (more != 1)} after it" if more else ""
         return (
             f" The load factor turned at {first.load_factor:.6g} (critical point {first.number}){again}; {unstable} of "
-            f"the {len(since)} states since are unstable. Where the body jumps to under a growing load, a path of "
-            "equilibria does not tell."
+            f"the {len(since)} states since are unstable. A path of equilibria does not show "
+            "where the body jumps to under a growing load."
         )
 
     def _turns(self) -> list[CriticalPoint]:

@@ -29,7 +29,7 @@ WRONG = {
                                            r"(?<=dxf: )layer 'cut': two outlines cross at \(10, [58]\) mm"),
     "only text": (lambda s: s.add_text("a"), "draws no lines; entities that are no lines left out: 1 TEXT$"),
     "nothing": (lambda s: None, "draws no lines$"),
-    "no length": (lambda s: s.add_line((1, 1), (1, 1)), "all its lines have no length"),
+    "no length": (lambda s: s.add_line((1, 1), (1, 1)), "none of its lines has a length"),
     "no area": (lambda s: (lines(s, SQUARE), s.add_lwpolyline([(2, 2), (4, 2), (2, 2)], close=True)),
                 r"layer '0': an outline crosses or touches itself at \(2, 2\) mm"),
     "branches": (lambda s: (lines(s, SQUARE), lines(s, [(0, 0), (5, 5)], closed=False)),
@@ -82,7 +82,7 @@ def test_units_layers_and_sizes(tmp_path):
         ("a.csv", "1,2\n3,nan\n", "a.csv, line 2: 'nan' is not a coordinate"),
         ("a.csv", "x1 [mile],x2\n", "a.csv, line 1: 'mile' is not a unit of length"),
         ("a.csv", "1\n", "a.csv, line 1: has 1 fields; expected x1, x2"),
-        ("a.pdf", "", "a.pdf: is not a drawing; there is: .dxf, .svg, .csv"),
+        ("a.pdf", "", "a.pdf: is not a drawing; these are: .dxf, .svg, .csv"),
     ],
 )
 def test_files_that_are_no_drawings(name, text, message, tmp_path):

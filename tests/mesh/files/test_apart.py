@@ -34,13 +34,13 @@ def test_a_crash_is_an_error():
 
 
 def test_an_end_is_no_crash():
-    with pytest.raises(InputError, match=r"^a.geo: ends gmsh before all of it is read; a script must not say Exit$"):
+    with pytest.raises(InputError, match=r"^a.geo: ends gmsh before all of it is read; a script must not have Exit$"):
         apart(os._exit, 0, program="gmsh", name="a.geo")
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGXCPU"), reason="no limits of time")
 def test_what_finds_no_end_is_ended():
-    with pytest.raises(InputError, match=r"^a.vtu: VTK finds no end in it: it is damaged$"):
+    with pytest.raises(InputError, match=r"^a.vtu: VTK does not finish reading it: it is damaged$"):
         apart(turn_round, program="VTK", name="a.vtu", seconds=1)
 
 

@@ -190,7 +190,7 @@ def test_sets_of_meshio_become_groups():
 @needs_meshio
 def test_what_meshio_does_not_read(tmp_path):
     (tmp_path / "part.xyz").write_bytes(b"x")
-    with pytest.raises(InputError, match=r"part.xyz: files '.xyz' are not known. There is: .*\.msh"):
+    with pytest.raises(InputError, match=r"part.xyz: files '.xyz' are not known. Known are: .*\.msh"):
         ms.mesh.read(tmp_path / "part.xyz", unit="m")
     (tmp_path / "part.off").write_bytes(b"OFF\nx\n")
     with pytest.raises(InputError, match=r"part.off: meshio cannot read it"):
@@ -207,7 +207,7 @@ def test_the_list_of_formats_is_what_can_be_read(tmp_path):
     (tmp_path / "part.svg").write_text("<svg/>")
     with pytest.raises(InputError, match=r"files '.svg' are not known") as error:
         ms.mesh.read(tmp_path / "part.svg", unit="m")
-    listed = str(error.value).rpartition("There is: ")[2].split(", ")
+    listed = str(error.value).rpartition("Known are: ")[2].split(", ")
     assert set(_READERS) - {".med"} <= set(listed)
     assert (".med" in listed) == (importlib.util.find_spec("h5py") is not None)
     assert {".stl", ".obj", ".ply", ".off", ".mesh"} <= set(listed)
@@ -224,7 +224,7 @@ def test_the_list_of_formats_is_what_can_be_read(tmp_path):
 def test_a_file_in_which_meshio_finds_no_end(tmp_path, monkeypatch):
     monkeypatch.setattr("magshell.mesh.files.reading.SECONDS", 2)
     (tmp_path / "part.node").write_bytes(b"")
-    with pytest.raises(InputError, match=r"^part.node: meshio finds no end in it"):
+    with pytest.raises(InputError, match=r"^part.node: meshio does not finish reading it"):
         ms.mesh.read(tmp_path / "part.node", unit="m")
 
 

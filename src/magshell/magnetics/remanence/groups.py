@@ -42,7 +42,7 @@ class ByGroup:
             if taken.size:
                 raise InputError(
                     f"remanence: element {taken[0]} is in the groups '{owner[taken[0]]}' and '{group}'; "
-                    "one of them must give it up"
+                    "an element has one remanence only"
                 )
             owner[members] = group
             values[members] = of(remanence, only(members, points))[members]

@@ -88,7 +88,7 @@ class Joined:
             raise InputError("draws no lines")
         self.size = float(np.linalg.norm(np.ptp(np.concatenate([piece.points for piece in pieces]), axis=0)))
         if not self.size > 0.0:
-            raise InputError("draws nothing: all its lines have no length")
+            raise InputError("draws nothing: none of its lines has a length")
         self.gap = GAP * self.size if gap is None else gap
         self._widest, self._gaps = 0.0, 0
         self.outlines: list[Chain] = []

@@ -80,7 +80,7 @@ def from_drawing(
     path, name = pathlib.Path(file), pathlib.Path(file).name
     suffix = path.suffix.lower()
     if suffix not in READERS:
-        raise InputError(f"{name}: is not a drawing; there is: {', '.join(READERS)}")
+        raise InputError(f"{name}: is not a drawing; these are: {', '.join(READERS)}")
     readable(path)
     reader, package = READERS[suffix]
     required(name)

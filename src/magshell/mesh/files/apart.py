@@ -64,9 +64,9 @@ def apart(
         found: Result | InputError = pickle.loads(answer)
     except (EOFError, pickle.UnpicklingError):
         if process.returncode == 0:
-            raise InputError(f"{name}: ends {program} before all of it is read; a script must not say Exit") from None
+            raise InputError(f"{name}: ends {program} before all of it is read; a script must not have Exit") from None
         if -process.returncode == getattr(signal, "SIGXCPU", None):
-            raise InputError(f"{name}: {program} finds no end in it: it is damaged") from None
+            raise InputError(f"{name}: {program} does not finish reading it: it is damaged") from None
         raise InputError(f"{name}: {program} crashes on it: it is damaged, or too large for the memory") from None
     if isinstance(found, InputError):
         raise found

@@ -123,7 +123,7 @@ def from_cad(
     path, name = pathlib.Path(file), pathlib.Path(file).name
     suffix = path.suffix.lower()
     if suffix not in GEOMETRY:
-        raise InputError(f"{name}: is not a geometry that gmsh meshes; there is: {', '.join(GEOMETRY)}")
+        raise InputError(f"{name}: is not a geometry that gmsh meshes; these are: {', '.join(GEOMETRY)}")
     readable(path)
     textual(path)
     if size is not None and not (math.isfinite(size) and size > 0.0):

@@ -157,5 +157,5 @@ def _unit(mesh: Any, name: str) -> str | None:
     if not units:
         return None
     if len(units) > 1 or not units <= set(LENGTH.units):
-        raise InputError(f"{name}: lengths are in {shortened(', '.join(sorted(units)))}; there may be {LENGTH.allowed}")
+        raise InputError(f"{name}: lengths are in {shortened(', '.join(sorted(units)))}; allowed are {LENGTH.allowed}")
     return units.pop()

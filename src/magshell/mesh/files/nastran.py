@@ -131,6 +131,6 @@ def _unit(lines: Lines, cards: list[Card]) -> str | None:
         if card.text(0).upper() == "UNITS":
             said = card.text(4).lower()
             if said not in LENGTH.units:
-                lines.fail(card.line, f"lengths are in {card.text(4)}; there may be {LENGTH.allowed}")
+                lines.fail(card.line, f"lengths are in {card.text(4)}; allowed are {LENGTH.allowed}")
             return said
     return None

@@ -56,7 +56,7 @@ def read_other(path: pathlib.Path, name: str, others: tuple[str, ...], seconds: 
     if needed is None:
         known = {ending for ending in meshio.extension_to_filetypes if _needed(meshio, ending) == ""}
         listed = ", ".join(sorted({*others, *known}))
-        raise InputError(f"{name}: files '{path.suffix}' are not known. There is: {listed}")
+        raise InputError(f"{name}: files '{path.suffix}' are not known. Known are: {listed}")
     if needed:
         raise InputError(f"{name}: meshio needs {needed} to read it, which is not installed: pip install {needed}")
     zones = len(re.findall(_ZONES[path.suffix.lower()], path.read_bytes())) if path.suffix.lower() in _ZONES else 1

@@ -184,7 +184,7 @@ def _tokens(content: str, name: str) -> list[Token]:
     while place < len(content):
         match = _TOKEN.match(content, place)
         if match is None or (match.lastgroup == "sign" and content.startswith("/*", place)):
-            what = f"'{shortened(content[place : place + 20])}' is no word of gmsh, or has no end"
+            what = f"'{shortened(content[place : place + 20])}' is not a word of gmsh, or does not end"
             raise InputError(f"{name}, line {line}: {what}")
         kind, text = str(match.lastgroup), match[0]
         if kind != "blank":
