@@ -92,10 +92,11 @@ def window(shared: Browser, file: pathlib.Path) -> Iterator[Browser]:
 
 
 def shape(window: Browser) -> np.ndarray:
-    """The pixels of the shape alone, without bar and letters."""
-    window.do(AFTER_DRAWING)
-    canvas = window.driver.find_element(By.ID, "canvas")
-    return np.asarray(Image.open(io.BytesIO(canvas.screenshot_as_png)).convert("RGB")).astype(int)
+    """The pixels of the shape alone, without bar, letters and probes."""
+    picture = window.do(AFTER_DRAWING + "drawScene(); return at('canvas').toDataURL();")
+    drawn = Image.open(io.BytesIO(base64.b64decode(picture.partition(",")[2])))
+    white = Image.new("RGBA", drawn.size, "white")
+    return np.asarray(Image.alpha_composite(white, drawn).convert("RGB")).astype(int)
 
 
 def text(window: Browser, identity: str) -> str:
@@ -221,7 +222,7 @@ def test_two_fingers_zoom(window):
 def test_click_on_a_curve_goes_to_its_step(window):
     plot = window.driver.find_element(By.ID, "plot")
     aside = window.driver.execute_script(
-        "const box = plot.getBoundingClientRect(); const {x, lines} = header.curves;"
+        "const box = plot.getBoundingClientRect(); const {x, lines} = curves.about;"
         "return [curves.px(x[3]) - box.width / 2, curves.py(lines[0].y[3]) - box.height / 2].map(Math.round)"
     )
     ActionChains(window.driver).move_to_element_with_offset(plot, *aside).click().perform()
@@ -229,7 +230,7 @@ def test_click_on_a_curve_goes_to_its_step(window):
 
 
 def test_unstable_steps_and_critical_points_are_marked(window, path):
-    script = "return header.curves.lines.length"
+    script = "return curves.about.lines.length"
     lines = window.driver.execute_script(script)
     hollow = window.driver.find_elements(By.CSS_SELECTOR, "#plot .line .hollow")
     critical = window.driver.find_elements(By.CSS_SELECTOR, "#plot .critical")
@@ -299,10 +300,10 @@ def test_marks_of_a_page_that_leaves_out_steps_are_at_theirs(shared, tmp_path, m
     assert len(line.split()) == len(path.steps)
     shared.do("go(2);" + AFTER_DRAWING)
     assert text(shared, "step") == f"step {numbers[2]} of 9"
-    place = shared.driver.execute_script("return curves.px(header.curves.x[given])".replace("given", str(numbers[2])))
+    place = shared.driver.execute_script("return curves.px(curves.about.x[given])".replace("given", str(numbers[2])))
     assert ring(shared)[0] == pytest.approx(place)
     assert text(shared, "field") == f"|B| = {1e3 * FIELD * numbers[2] / 9:.4g} mT"
-    nearest = "const box = plot.getBoundingClientRect(); const {x, lines} = header.curves; const i = given[0];"
+    nearest = "const box = plot.getBoundingClientRect(); const {x, lines} = curves.about; const i = given[0];"
     nearest += (
         "return curves.nearest({clientX: box.left + curves.px(x[i]), clientY: box.top + curves.py(lines[0].y[i])});"
     )

@@ -91,7 +91,7 @@ def test_names_are_escaped(name):
     assert text.count("<script") == plain.count("<script")
     assert text.count("</script") == plain.count("</script")
     assert "<!--" not in text
-    assert {line["label"] for line in header(text)["curves"]["lines"]} <= {name}
+    assert {line["label"] for line in header(text)["curves"][0]["lines"]} <= {name}
     assert f"<h1>{html.escape(name)}</h1>" in text
 
 
@@ -163,7 +163,7 @@ def test_page_of_a_long_path_is_small_says_so_and_has_whole_curves(monkeypatch):
     assert numbers <= steps.MOST_BYTES
     about = {output["name"]: output for output in header(text)["outputs"]}
     assert about["displacement"]["steps"] == len(header(text)["steps"]) == 10
-    assert len(header(text)["curves"]["x"]) == len(path.steps) == 41
+    assert len(header(text)["over"][0]["x"]) == len(path.steps) == 41
 
 
 def test_short_path_is_shown_whole(path):

@@ -20,26 +20,29 @@ const MARKS = {
 const DASHES = { "-": "none", "--": "7 4", ":": "2 3" };
 
 class Curves {
-  // `steps` are those of the page; their numbers are their places in `about.x` and in `y` of each line.
-  // Of the groups of curves, the first is shown at first; the others say what differs from it.
-  constructor(plot, legend, groups, steps, chosen) {
-    Object.assign(this, { plot, legend, groups, steps });
+  // `steps` are those of the page; their numbers are their places in `x` of what curves are drawn over and in `y` of
+  // each line. The first group of curves over the first of `over` is shown at first.
+  constructor(plot, legend, groups, over, steps, chosen) {
+    Object.assign(this, { plot, legend, groups, over, steps });
     plot.addEventListener("click", (event) => {
       const step = this.nearest(event);
       if (step !== null) chosen(step);
     });
-    this.show(0);
+    this.show(0, 0);
     new ResizeObserver(() => this.draw()).observe(plot);
   }
 
-  // Make another group the shown one.
-  show(group) {
+  // Show this group over that.
+  show(group, over) {
     const { legend, groups, steps } = this;
-    const about = this.about = { ...groups[0], ...groups[group] };
+    const { x, label, above, critical } = this.over[over];
+    const points = groups[group].critical.map((point, i) => ({ ...point, x: critical[i] }));
+    const about = this.about = { ...groups[group], x, xlabel: label, above, critical: points };
     legend.replaceChildren();
     for (const line of about.lines) this.explain(legend, line);
     if (steps.some((step) => step.unstable)) this.remark(legend, MARKS.o, "hollow", "unstable");
     if (about.critical.length) this.remark(legend, MARKS.D, "critical", "critical point");
+    if (about.note) legend.append(Object.assign(document.createElement("li"), { textContent: about.note }));
     this.draw();
   }
 
