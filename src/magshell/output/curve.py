@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 NEGLIGIBLE = 0.01
 LOAD = r"$10^3\,|B^\mathrm{ext}|\,|B^\mathrm{rem}|\,/\,(\mu\,\mu_0)$"
 LOAD_TEXT = "10³ |B| |Bʳᵉᵐ| / (µ µ₀)"
+ROUND, DEGREES = (1, 2, 5, 10), (1, 1.5, 3, 4.5, 9, 10)
 INCHES = (9.0, 5.6)
 LEGEND_POINTS, SMALLEST_POINTS = 14.0, 6.5
 LINE = 1.9
@@ -110,7 +111,7 @@ def curve_figure(path: Path, columns: Sequence[str] = (), over: str | None = Non
     axes.axhline(0, color="#9aa3ad", linewidth=0.8, zorder=1)
     axes.set_xlabel(along.label, **TEXT)
     axes.set_ylabel(title, **TEXT)
-    dress(axes)
+    dress(axes, DEGREES if along.name.endswith(".angle") else ROUND)
     scale = load_per_mT(path) if along.name == FIELD else 0.0
     if scale > 0:
         second_axis(axes, scale, LOAD)
@@ -162,12 +163,12 @@ def curves(path: Path) -> list[tuple[str, FloatArray, dict[str, Any]]]:
     return [(curve.label, curve.values, curve.style) for curve in displacements(path)]
 
 
-def dress(axes: Axes) -> None:
-    """Give the axes of a curve the house style."""
+def dress(axes: Axes, steps: Sequence[float] = ROUND) -> None:
+    """Give the axes of a curve the house style; `steps` are those between ticks, from 1 to 10."""
     from matplotlib.ticker import MaxNLocator
 
     axes.margins(x=0.02)
-    axes.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
+    axes.xaxis.set_major_locator(MaxNLocator(6, steps=steps))
     axes.grid(color="#e5e7eb", linewidth=0.8)
     axes.spines["right"].set_visible(False)
     axes.tick_params(**TICKS)
@@ -179,7 +180,7 @@ def second_axis(axes: Axes, factor: float, label: str) -> None:
 
     above = axes.secondary_xaxis("top", functions=(_times(factor), _times(1 / factor)))
     above.set_xlabel(label, labelpad=8, **TEXT)
-    above.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
+    above.xaxis.set_major_locator(MaxNLocator(6, steps=ROUND))
     above.tick_params(**TICKS)
 
 

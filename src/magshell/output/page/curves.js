@@ -35,9 +35,10 @@ class Curves {
   // Show this group over that.
   show(group, over) {
     const { legend, groups, steps } = this;
-    const { x, label, above, critical } = this.over[over];
+    const { name, x, label, above, critical } = this.over[over];
+    const rounds = name.endsWith(".angle") ? DEGREES : ROUND;
     const points = groups[group].critical.map((point, i) => ({ ...point, x: critical[i] }));
-    const about = this.about = { ...groups[group], x, xlabel: label, above, critical: points };
+    const about = this.about = { ...groups[group], x, xlabel: label, rounds, above, critical: points };
     legend.replaceChildren();
     for (const line of about.lines) this.explain(legend, line);
     if (steps.some((step) => step.unstable)) this.remark(legend, MARKS.o, "hollow", "unstable");
@@ -86,7 +87,7 @@ class Curves {
     this.px = (x) => box.left + ((x - left) / (right - left)) * (box.right - box.left);
     this.py = (y) => box.bottom - ((y - below) / (above - below)) * (box.bottom - box.top);
     const middle = (box.left + box.right) / 2;
-    for (const [x, text] of ticks(left, right, Math.max(2, Math.min(7, width / 90)))) {
+    for (const [x, text] of ticks(left, right, Math.max(2, Math.min(7, width / 90)), about.rounds)) {
       svg(plot, "path", { d: `M${this.px(x)},${box.top}V${box.bottom}`, class: "grid" });
       svg(plot, "text", { x: this.px(x), y: box.bottom + 18, "text-anchor": "middle" }, text);
     }

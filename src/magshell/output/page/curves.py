@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from magshell.output.abscissa import FIELD, abscissae
 from magshell.output.curve import LOAD_TEXT, displacements, load_per_mT
 from magshell.output.series import LONGEST_NAME, Curve, Group, groups, shorten, some
-from magshell.output.style import INK
 
 if TYPE_CHECKING:
     from magshell.solver.critical import CriticalPoint
@@ -74,4 +73,4 @@ def probes(path: Path) -> list[dict[str, Any]]:
     names = path.model.probe_nodes
     drawn, _ = some(displacements(path), len(names))
     colours = {curve.name: curve.style["color"] for curve in drawn} if len(names) > 1 else {}
-    return [{"name": name, "node": int(node), "colour": colours.get(name, INK)} for name, node in names.items()]
+    return [{"name": name, "node": int(node), "colour": colours.get(name)} for name, node in names.items()]

@@ -102,6 +102,7 @@ def collect(path: Path, steps: Sequence[Step], color: str, advance: Callable[[fl
             for step, magnitude in zip(steps, magnitudes, strict=True)
         ],
         "strongest": max(magnitudes),
+        "where": "" if path.model.field.is_uniform else " at the centre",
         "stages": path.steps[-1].stage + 1,
         "over": over(path),
         "curves": curves(path),

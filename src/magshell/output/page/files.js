@@ -86,7 +86,9 @@ async function savePicture() {
   sheet.pen.fillRect(left, top, bar.width, bar.height);
   for (const tick of at("ticks").children) {
     const box = tick.getBoundingClientRect();
-    sheet.write(tick.textContent, box.left - stage.left, box.top + box.height / 2 - stage.top + head, 12.5, "--grey");
+    const middle = box.top + box.height / 2 - stage.top + head;
+    sheet.write(tick.textContent, box.left - stage.left, middle, 12.5, "--grey");
+    sheet.pen.fillRect(left + bar.width, middle - 0.5, 4, 1);
   }
   const quantity = at("quantity").getBoundingClientRect();
   sheet.write(at("quantity").textContent, quantity.left - stage.left, quantity.top + 10 - stage.top + head, 15);

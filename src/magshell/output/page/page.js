@@ -159,7 +159,7 @@ function go(step) {
   const about = header.steps[state.step];
   at("slider").value = state.step;
   at("step").textContent = `step ${about.number} of ${header.steps.at(-1).number}`;
-  at("field").textContent = header.strongest > 0 ? `|B| = ${figures(about.magnitude * 1e3)} mT` : "no field";
+  at("field").textContent = header.strongest > 0 ? `|B| = ${figures(about.magnitude * 1e3)} mT${header.where}` : "no field";
   const stage = header.stages > 1 ? `stage ${about.stage}, ` : "";
   at("load").textContent = `${stage}load factor ${figures(about.load_factor)}`;
   at("unstable").hidden = !about.unstable;

@@ -35,8 +35,7 @@ class Probes {
       return boxes.every((b) => box[2] < b[0] || box[0] > b[2] || box[3] < b[1] || box[1] > b[3]);
     };
     for (const { text, width: wide, x, y, colour } of this.marks) {
-      const group = svg(drawing, "g", { style: `color:${colour}`, class: "line" });
-      svg(group, "circle", { cx: x, cy: y, r: 4.5, class: "probe" });
+      svg(drawing, "circle", { cx: x, cy: y, r: 4.5, class: "probe line", style: `color:${colour ?? "var(--ink)"}` });
       const box = ([u, v]) => {
         const [mx, my] = [x + u * (GAP + wide / 2), y + v * (GAP + LETTERS / 2)];
         return [mx - wide / 2 - 1, my - LETTERS / 2 - 1, mx + wide / 2 + 1, my + LETTERS / 2 + 1];
