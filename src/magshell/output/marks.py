@@ -22,6 +22,7 @@ REMANENCE, LOAD, SUPPORTS = COLOURS[0], COLOURS[3], (COLOURS[2], COLOURS[4], COL
 BODIES, HINGES = (COLOURS[1], COLOURS[7 % len(COLOURS)]), (ACCENT, INK)
 MOST_ARROWS = 110
 MOST_POSTS = 40
+MOST_NAMES = 40
 MOST_OF_A_LOAD = 12
 EVENING = 8
 LONGEST, SHORTEST = 0.11, 0.03
@@ -367,14 +368,15 @@ def load_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:
 
 
 def probe_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:
-    """A ball and a name at each probe."""
+    """A ball at each probe, and a name at each of up to `MOST_NAMES`."""
     nodes = list(model.probe_nodes.values())
     if not nodes:
         return []
     places = model.shell.mesh.points[nodes]
     centre = model.shell.mesh.points.mean(axis=0)
     letters = []
-    for name, place in zip(model.probe_nodes, places, strict=True):
+    names = list(model.probe_nodes)
+    for name, place in ((names[i], places[i]) for i in spread_out(places, MOST_NAMES)):
         away = (place - centre) @ axes[:2].T
         length = float(np.linalg.norm(away))
         direction = away / length if length > 1e-3 * size else np.array([0.0, 1.0])

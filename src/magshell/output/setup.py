@@ -339,8 +339,10 @@ def _letter(axes: Any, marks: list[Mark], camera: Camera) -> list[Mark]:
 
 
 def _told(mark: Mark, without: int) -> Mark:
-    count = len(mark.letters)
-    return replace(mark, name=f"{mark.name}, {count - without} of {count} named") if without else mark
+    """With the number of names in the legend if some places have none."""
+    named, count = len(mark.letters) - without, len(mark.places)
+    some = mark.solids is Solids.BALLS and mark.letters and named < count
+    return replace(mark, name=f"{mark.name}, {named} of {count} named") if some else mark
 
 
 def _boxes(points: FloatArray, half: float) -> FloatArray:

@@ -161,7 +161,9 @@ function go(step) {
   at("step").textContent = `step ${about.number} of ${header.steps.at(-1).number}`;
   at("field").textContent = header.strongest > 0 ? `|B| = ${figures(about.magnitude * 1e3)} mT${header.where}` : "no field";
   const stage = header.stages > 1 ? `stage ${about.stage}, ` : "";
-  at("load").textContent = `${stage}load factor ${figures(about.load_factor)}`;
+  const turned = header.over.find(({ name }) => name.endsWith(".angle"));
+  const angle = turned ? `, ${turned.label.replace(" (°)", "")} ${figures(turned.x[about.number])}°` : "";
+  at("load").textContent = `${stage}load factor ${figures(about.load_factor)}${angle}`;
   at("unstable").hidden = !about.unstable;
   curves?.mark(state.step);
   showShape();
