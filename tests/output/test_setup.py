@@ -258,12 +258,12 @@ def figure_of(monkeypatch):
 def test_names_of_many_probes_do_not_cover_each_other(figure_of, can_draw):
     """Those without room are left out, and the legend says how many."""
     mesh = ms.mesh.rectangle(LENGTH, WIDTH, (20, 6))
-    probes = {f"probe-{i}": tuple(point) for i, point in enumerate(mesh.points)}
+    probes = {f"probe-{i}": tuple(point) for i, point in enumerate(mesh.points[::8])}
     figure = figure_of(strip(probes=probes))
     written = [text for text in figure.axes[0].texts if text.get_text().startswith("probe-")]
     boxes = np.array([text.get_window_extent().extents for text in written])
     a, b = boxes[:, None], boxes[None]
-    assert ((a[..., :2] < b[..., 2:]) & (a[..., 2:] > b[..., :2])).all(axis=-1).sum() == len(written) > 5
+    assert ((a[..., :2] < b[..., 2:]) & (a[..., 2:] > b[..., :2])).all(axis=-1).sum() == len(written) > 10
     words = " ".join(" ".join(text.get_text().split()) for text in figure.legends[0].get_texts())
     assert f"probes, {len(written)} of {len(probes)} named" in words
 

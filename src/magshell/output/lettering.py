@@ -11,7 +11,7 @@ from magshell.arrays import AnyArray, FloatArray
 BESIDE = 9.0
 """Points from a place to the letters beside it."""
 FARTHER = (1.0, 2.0, 3.2)
-"""Distances of letters that are needed, over `BESIDE`; others would seem to name something else."""
+"""Distances over `BESIDE`; the last is for letters that are needed, others would seem to name something else."""
 DIRECTIONS = 16
 
 
@@ -76,7 +76,7 @@ def _candidates(text: Text, beside: float) -> FloatArray:
     half = 0.5 * np.array(text.size)
     # As far along each direction as it takes for the box to leave a circle about the place.
     reach = np.minimum(*(half / np.maximum(np.abs(around), 1e-9)).T)
-    rings = [text.place + around * (reach + factor * beside)[:, None] for factor in FARTHER[: 3 if text.needed else 1]]
+    rings = [text.place + around * (reach + factor * beside)[:, None] for factor in FARTHER[: 3 if text.needed else 2]]
     return np.concatenate([[text.place] if not towards.any() else np.zeros((0, 2)), *rings])
 
 
