@@ -42,6 +42,7 @@ def rolled(mesh: Mesh, steps: int, probe: str = "tip") -> Path:
     )
     discretisation = Discretisation(model, nested_dissection)
     path = Path(model, discretisation, ms.Settings(), "none", converged=True)
+    path.courses.append(model.course(0))
     rest = discretisation.undeformed()
     s = mesh.points[:, 0]
     zero = np.zeros_like(s)

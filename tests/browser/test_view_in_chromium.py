@@ -6,6 +6,7 @@ import base64
 import io
 import json
 import pathlib
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -21,8 +22,11 @@ from selenium.webdriver.common.keys import Keys
 from solver.models import LENGTH, THICKNESS, rubber, strip
 
 import magshell as ms
+from magshell.equations.discretisation import Discretisation
 from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import OUTPUTS
+from magshell.linalg.ordering import nested_dissection
+from magshell.output.history import history_text
 from magshell.output.page import shown_steps, write_page
 from magshell.output.page import steps as page_steps
 from magshell.output.solid.slab import slab_of, volume
@@ -84,6 +88,7 @@ def window(shared: Browser, file: pathlib.Path) -> Iterator[Browser]:
         asked = set()
     else:
         shared.size(*SIZE)
+        shared.requests()  # those of other pages
         shared.open(file)
         asked = {file.as_uri()}
     yield shared
@@ -92,10 +97,11 @@ def window(shared: Browser, file: pathlib.Path) -> Iterator[Browser]:
 
 
 def shape(window: Browser) -> np.ndarray:
-    """The pixels of the shape alone, without bar and letters."""
-    window.do(AFTER_DRAWING)
-    canvas = window.driver.find_element(By.ID, "canvas")
-    return np.asarray(Image.open(io.BytesIO(canvas.screenshot_as_png)).convert("RGB")).astype(int)
+    """The pixels of the shape alone, without bar, letters and probes."""
+    picture = window.do(AFTER_DRAWING + "drawScene(); return at('canvas').toDataURL();")
+    drawn = Image.open(io.BytesIO(base64.b64decode(picture.partition(",")[2])))
+    white = Image.new("RGBA", drawn.size, "white")
+    return np.asarray(Image.alpha_composite(white, drawn).convert("RGB")).astype(int)
 
 
 def text(window: Browser, identity: str) -> str:
@@ -221,7 +227,7 @@ def test_two_fingers_zoom(window):
 def test_click_on_a_curve_goes_to_its_step(window):
     plot = window.driver.find_element(By.ID, "plot")
     aside = window.driver.execute_script(
-        "const box = plot.getBoundingClientRect(); const {x, lines} = header.curves;"
+        "const box = plot.getBoundingClientRect(); const {x, lines} = curves.about;"
         "return [curves.px(x[3]) - box.width / 2, curves.py(lines[0].y[3]) - box.height / 2].map(Math.round)"
     )
     ActionChains(window.driver).move_to_element_with_offset(plot, *aside).click().perform()
@@ -229,7 +235,7 @@ def test_click_on_a_curve_goes_to_its_step(window):
 
 
 def test_unstable_steps_and_critical_points_are_marked(window, path):
-    script = "return header.curves.lines.length"
+    script = "return curves.about.lines.length"
     lines = window.driver.execute_script(script)
     hollow = window.driver.find_elements(By.CSS_SELECTOR, "#plot .line .hollow")
     critical = window.driver.find_elements(By.CSS_SELECTOR, "#plot .critical")
@@ -299,10 +305,10 @@ def test_marks_of_a_page_that_leaves_out_steps_are_at_theirs(shared, tmp_path, m
     assert len(line.split()) == len(path.steps)
     shared.do("go(2);" + AFTER_DRAWING)
     assert text(shared, "step") == f"step {numbers[2]} of 9"
-    place = shared.driver.execute_script("return curves.px(header.curves.x[given])".replace("given", str(numbers[2])))
+    place = shared.driver.execute_script("return curves.px(curves.about.x[given])".replace("given", str(numbers[2])))
     assert ring(shared)[0] == pytest.approx(place)
     assert text(shared, "field") == f"|B| = {1e3 * FIELD * numbers[2] / 9:.4g} mT"
-    nearest = "const box = plot.getBoundingClientRect(); const {x, lines} = header.curves; const i = given[0];"
+    nearest = "const box = plot.getBoundingClientRect(); const {x, lines} = curves.about; const i = given[0];"
     nearest += (
         "return curves.nearest({clientX: box.left + curves.px(x[i]), clientY: box.top + curves.py(lines[0].y[i])});"
     )
@@ -405,6 +411,212 @@ def test_other_curves_can_be_chosen(shared, tmp_path):
     place = shared.driver.execute_script("return curves.py(arguments[0])", float(moment.iloc[-1]))
     assert ring(shared)[1] == pytest.approx(place, abs=1e-6)
     assert shared.console() == []
+
+
+SAVED = """
+window.saved = null;
+HTMLAnchorElement.prototype.click = function () { window.named = this.download; };
+const made = URL.createObjectURL;
+URL.createObjectURL = (content) => {
+  const reader = new FileReader();
+  reader.onload = () => { window.saved = reader.result.split(",")[1]; };
+  reader.readAsDataURL(content);
+  return made.call(URL, content);
+};
+"""
+
+
+def saved(window: Browser, button: str) -> tuple[str, bytes]:
+    """Name and content of the file that a button makes."""
+    window.driver.execute_script(SAVED)
+    window.driver.find_element(By.ID, button).click()
+    content = base64.b64decode(window.until("return window.saved"))
+    return window.driver.execute_script("return named"), content
+
+
+@pytest.fixture(scope="module")
+def turned(tmp_path_factory: pytest.TempPathFactory) -> tuple[pathlib.Path, Path]:
+    """The page and the path of a strip in a field that is raised and then turned by 30°."""
+    field = ms.UniformField((0, 0, 2e-3), history=(1, 1), rotation_axis=(0, 1, 0), rotation=(0, np.pi / 6))
+    probes = {"tip": (LENGTH, 0, 0), "corner": (LENGTH, strip().shell.mesh.points[:, 1].max(), 0), "root": (0, 0, 0)}
+    path = solve(replace(strip(), field=field, stages=[ms.Stage(), ms.Stage(stops=2)], probes=probes))
+    return write_page(path, tmp_path_factory.mktemp("turned") / "view.html", "Turned"), path
+
+
+@pytest.fixture
+def strip_page(shared: Browser, turned) -> Iterator[Browser]:
+    file, _ = turned
+    shared.size(*SIZE)
+    shared.open(file)
+    yield shared
+    assert shared.console() == []
+
+
+def test_curves_go_over_the_angle_of_a_field_that_turns(strip_page, turned):
+    _, path = turned
+    options = "return [...document.querySelectorAll('#over option')].map((option) => option.text)"
+    assert strip_page.driver.execute_script(options) == ["angle of the field (°)", "|B| (mT)", "load factor"]
+    assert "angle of the field (°)" in strip_page.driver.find_element(By.ID, "plot").text
+    x = strip_page.driver.execute_script("return curves.about.x")
+    angle = [np.degrees(np.arctan2(step.flux_density[0], step.flux_density[2])) for step in path.steps[1:]]
+    assert x == pytest.approx([0.0, *angle], abs=1e-9)
+    choose(strip_page, "over", "2")
+    strip_page.do("go(2);")
+    place = strip_page.driver.execute_script("return curves.px(arguments[0])", path.steps[2].load_factor)
+    assert ring(strip_page)[0] == pytest.approx(place)
+
+
+def test_probes_are_marked_on_the_body_with_their_names(strip_page, turned):
+    """Where their nodes are seen; no name covers a mark or another name, or leaves the picture."""
+    _, path = turned
+    strip_page.do("go(header.steps.length - 1);" + AFTER_DRAWING)
+    script = (
+        "const {axes, centre, perPixel, canvas} = camera; return header.probes.map(({name}) => {"
+        "const x = arguments[0][name].map((v, k) => v - centre[k]);"
+        "const middle = [canvas.clientWidth / 2, canvas.clientHeight / 2];"
+        "return [middle[0] + dot(axes[0], x) / perPixel, middle[1] - dot(axes[1], x) / perPixel]})"
+    )
+    mesh, state = path.discretisation.mesh, path.steps[-1].state
+    there = {name: (mesh.points[node] + state.u[node]).tolist() for name, node in path.model.probe_nodes.items()}
+    expected = np.array(strip_page.driver.execute_script(script, there))
+    circles = strip_page.driver.find_elements(By.CSS_SELECTOR, "#probes circle")
+    seen = np.array([[float(circle.get_attribute(name)) for name in ("cx", "cy")] for circle in circles])
+    assert np.abs(seen - expected).max() < 0.5, (seen, expected)
+    names = strip_page.driver.find_elements(By.CSS_SELECTOR, "#probes text")
+    assert [name.text for name in names] == list(there)
+    rects = "return [...document.querySelectorAll('#probes text, #probes circle')].map((one) => {"
+    rects += "const {left, top, right, bottom} = one.getBoundingClientRect(); return [left, top, right, bottom]})"
+    boxes = np.array(strip_page.driver.execute_script(rects))
+    a, b = boxes[:, None], boxes[None]
+    crossing = ((a[..., :2] < b[..., 2:] - 1) & (a[..., 2:] > b[..., :2] + 1)).all(axis=-1)
+    assert crossing.sum() == len(boxes), boxes
+    strip_page.driver.find_element(By.ID, "marks").click()
+    strip_page.do(AFTER_DRAWING)
+    assert not strip_page.driver.find_elements(By.CSS_SELECTOR, "#probes circle")
+
+
+def point_at(window: Browser, place: np.ndarray) -> str:
+    """Put the pointer over a place in space; what the page says there."""
+    script = (
+        "const {axes, centre, perPixel, canvas} = camera; const x = arguments[0].map((v, k) => v - centre[k]);"
+        "return [dot(axes[0], x) / perPixel, -dot(axes[1], x) / perPixel]"
+    )
+    aside = np.array(window.driver.execute_script(script, place.tolist()))
+    canvas = window.driver.find_element(By.ID, "canvas")
+    ActionChains(window.driver).move_to_element_with_offset(canvas, *np.round(aside).astype(int).tolist()).perform()
+    window.do(AFTER_DRAWING)
+    return window.driver.execute_script("return at('hint').hidden ? '' : at('hint').innerText")
+
+
+def numbers(text_: str) -> list[float]:
+    return [float(one.replace("−", "-")) for one in re.findall(r"[−-]?\d+\.?\d*(?:e[−-]?\d+)?", text_)]
+
+
+def test_pointer_tells_value_place_element_and_node(window, path):
+    """At the middle of an element, within a pixel; with another colour its unit; nothing beside the body."""
+    window.do("camera.look(-90, 90); go(2);" + AFTER_DRAWING)
+    mesh, state = path.discretisation.mesh, path.steps[2].state
+    element = 31
+    nodes = mesh.elements[element]
+    shares = np.array([-0.25] * 4 + [0.5] * 4)
+    X, u = shares @ mesh.points[nodes], shares @ state.u[nodes]
+    pixel = window.driver.execute_script("return camera.perPixel")
+    value, now, before, last = point_at(window, X + u).split("\n")
+    assert value.startswith("u₃ = ")
+    assert value.endswith(" mm")
+    assert numbers(value) == pytest.approx([1e3 * u[2]], abs=3e3 * pixel)
+    assert numbers(now) == pytest.approx(1e3 * (X + u), abs=3e3 * pixel)
+    assert numbers(before) == pytest.approx(1e3 * X, abs=3e3 * pixel)
+    assert numbers(last)[0] == element
+    assert numbers(last)[1] in nodes
+    choose(window, "colour", "energy 0")
+    assert point_at(window, X + u).startswith("W = ")
+    assert " µJ" in point_at(window, X + u)
+    assert point_at(window, np.array([-0.02 * mesh.size, 0, 0])) == ""
+
+
+def test_pointer_on_a_probe_tells_its_name_and_node(strip_page, turned):
+    _, path = turned
+    strip_page.do("go(header.steps.length - 1);" + AFTER_DRAWING)
+    node = path.model.probe_nodes["tip"]
+    u = path.steps[-1].state.u[node]
+    lines = point_at(strip_page, path.discretisation.mesh.points[node] + u).split("\n")
+    assert lines[0] == "tip"
+    assert numbers(lines[1])[-1] == pytest.approx(1e3 * u[2], rel=1e-3)
+    assert lines[-1] == f"node {node}"
+
+
+def test_button_saves_the_table(strip_page, turned):
+    _, path = turned
+    name, content = saved(strip_page, "table")
+    assert name == "Turned, history.csv"
+    assert content.decode() == history_text(path)
+
+
+def test_buttons_save_pictures_of_shape_and_curves(strip_page):
+    """Twice as sharp as the page, with body, colours of the bar, probes and field; with the colours of the curves."""
+    strip_page.do("go(header.steps.length - 1);" + AFTER_DRAWING)
+    name, content = saved(strip_page, "picture")
+    last = strip_page.driver.execute_script("return header.steps.at(-1).number")
+    assert name == f"Turned, step {last}.png"
+    picture = Image.open(io.BytesIO(content)).convert("RGB")
+    stage = strip_page.driver.execute_script("return [at('stage').clientWidth, at('stage').clientHeight]")
+    assert picture.size == (2 * stage[0], 2 * (stage[1] + 56))
+    counted = {colour: count for count, colour in picture.getcolors(picture.size[0] * picture.size[1])}
+    assert counted[255, 255, 255] > 0.4 * picture.size[0] * picture.size[1]
+    assert len(counted) > 500, "shades of the body and of the bar"
+    assert counted[0xC2, 0x41, 0x0C] > 100, "the field's arrow"
+    assert counted[0x1D, 0x4E, 0xD8] > 50, "the mark of the first probe"
+    name, content = saved(strip_page, "curves-picture")
+    assert name == "Turned, displacement.png"
+    picture = Image.open(io.BytesIO(content)).convert("RGB")
+    counted = {colour: count for count, colour in picture.getcolors(picture.size[0] * picture.size[1])}
+    assert counted[0x1D, 0x4E, 0xD8] > 500, "its curve"
+
+
+def test_keys_turn_and_zoom_the_view(window):
+    body_ = window.driver.find_element(By.TAG_NAME, "body")
+    before = window.do("return [camera.azimuth, camera.elevation, camera.perPixel, state.step]")
+    body_.send_keys(Keys.SHIFT, Keys.ARROW_LEFT, Keys.ARROW_UP, Keys.NULL)
+    body_.send_keys("+")
+    after = window.do("return [camera.azimuth, camera.elevation, camera.perPixel, state.step]")
+    assert after[0] - before[0] == pytest.approx(-10)
+    assert after[1] - before[1] == pytest.approx(10)
+    assert before[2] / after[2] == pytest.approx(1.25)
+    assert after[3] == before[3]
+
+
+def test_page_of_many_probes_names_those_that_have_room(shared, tmp_path):
+    """All marks are there; the legend says how many curves are drawn."""
+    path = rolled(plate((10, 6)), 2)
+    points = path.discretisation.mesh.points
+    model = replace(path.model, probes={f"point-{i}": tuple(x) for i, x in enumerate(points)})
+    path = replace(path, model=model, discretisation=Discretisation(model, nested_dissection))
+    shared.size(*SIZE)
+    shared.open(write_page(path, tmp_path / "view.html"))
+    assert len(shared.driver.find_elements(By.CSS_SELECTOR, "#probes circle")) == len(points)
+    assert 3 < len(shared.driver.find_elements(By.CSS_SELECTOR, "#probes text")) < len(points)
+    legend = shared.driver.find_element(By.ID, "legend").text
+    assert f"of {len(points)} probes are drawn; history.csv has all." in legend
+    assert shared.console() == []
+
+
+@pytest.mark.parametrize("width", [1400, 900, 390])
+def test_controls_stay_within_the_window(strip_page, width):
+    """Also on a telephone: nothing scrolls sideways, and no control covers another."""
+    strip_page.size(width, 844)
+    strip_page.do(AFTER_DRAWING)
+    assert strip_page.driver.execute_script("return document.documentElement.scrollWidth") <= width
+    rects = "return [...document.querySelectorAll('select, button, input')].filter((one) => one.offsetParent)"
+    rects += ".map((one) => {const {left, top, right, bottom} = one.getBoundingClientRect();"
+    rects += " return [left, top, right, bottom]})"
+    boxes = np.array(strip_page.driver.execute_script(rects))
+    assert (boxes[:, 0] >= 0).all()
+    assert (boxes[:, 2] <= width).all()
+    if width > 640:  # below, the footer stays on top of what scrolls
+        a, b = boxes[:, None], boxes[None]
+        crossing = ((a[..., :2] < b[..., 2:]) & (a[..., 2:] > b[..., :2])).all(axis=-1)
+        assert crossing.sum() == len(boxes)
 
 
 def test_regions_are_drawn_with_their_thickness(shared, tmp_path):

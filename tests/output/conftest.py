@@ -128,6 +128,7 @@ class FakePath:
             ),
         )
         self.discretisation = FakeDiscretisation(self.model, mesh)
+        self.courses = [SimpleNamespace(amounts=lambda load: SimpleNamespace(drives=np.array([load, 0.0])))] * 3
         self.critical_points, self.converged, self.reason = [], True, "the end of the path is reached"
         self.steps = [self._step(number, load) for number, load in enumerate(loads)]
         self.history = History(self.discretisation)

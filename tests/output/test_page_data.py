@@ -10,7 +10,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from conftest import FakePath
+from conftest import LENGTH, RADIUS, FakePath
 
 from magshell.errors import InputError
 from magshell.evaluation import outputs
@@ -18,9 +18,12 @@ from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import OUTPUTS, Output, find
 from magshell.materials import MicropolarMooneyRivlin, MicropolarNeoHookean, MicropolarStVenantKirchhoff
 from magshell.output.animation import draw_steps
+from magshell.output.curve import curve_figure
+from magshell.output.history import HistoryWriter
 from magshell.output.page import page, shown_steps, steps, write_page
 from magshell.output.page.arrays import LARGEST, MISSING, quantised, span
 from magshell.output.page.facts import facts
+from magshell.output.series import MOST_CURVES
 from magshell.output.shape import shown_values
 from magshell.output.tessellation import Tessellation
 from magshell.output.vtu import grid
@@ -91,7 +94,7 @@ def test_names_are_escaped(name):
     assert text.count("<script") == plain.count("<script")
     assert text.count("</script") == plain.count("</script")
     assert "<!--" not in text
-    assert {line["label"] for line in header(text)["curves"]["lines"]} <= {name}
+    assert {line["label"] for line in header(text)["curves"][0]["lines"]} <= {name}
     assert f"<h1>{html.escape(name)}</h1>" in text
 
 
@@ -163,12 +166,60 @@ def test_page_of_a_long_path_is_small_says_so_and_has_whole_curves(monkeypatch):
     assert numbers <= steps.MOST_BYTES
     about = {output["name"]: output for output in header(text)["outputs"]}
     assert about["displacement"]["steps"] == len(header(text)["steps"]) == 10
-    assert len(header(text)["curves"]["x"]) == len(path.steps) == 41
+    assert len(header(text)["over"][0]["x"]) == len(path.steps) == 41
 
 
 def test_short_path_is_shown_whole(path):
     assert shown_steps(path) == path.steps
     assert "steps" not in dict(facts(path, path.steps))
+
+
+def test_table_of_the_page_is_the_file(path, tmp_path):
+    writer = HistoryWriter(tmp_path)
+    writer.resumed(path)
+    assert array(page(path), "history", "u1").tobytes() == (tmp_path / "history.csv").read_bytes()
+
+
+def test_page_has_the_curves_of_the_picture_without_round_off():
+    """What is all round-off is zero in both, whatever its pattern."""
+    path = FakePath(probes={"still": (LENGTH, 0, RADIUS)})
+    rng = np.random.default_rng(5)
+    for step in path.steps:
+        step.state.u[:] = 1e-15 * LENGTH * rng.normal(size=step.state.u.shape)
+    lines = header(page(path))["curves"][0]["lines"]
+    in_picture = [line for line in curve_figure(path).axes[0].lines if "still" in line.get_label()]
+    assert len(lines) == len(in_picture) > 0
+    for line, drawn in zip(lines, in_picture, strict=True):
+        assert line["y"] == [0.0] * len(path.steps) == drawn.get_ydata().tolist()
+
+
+def test_curves_of_the_page_go_over_what_those_of_the_picture_go_over(path):
+    path.steps[2].kind = "limit point"
+    path.critical_points = [path.steps[2]]
+    about = header(page(path))
+    assert [(one["name"], one["label"]) for one in about["over"]] == [
+        ("field", "|B| (mT)"),
+        ("load_factor", "load factor"),
+    ]
+    for one in about["over"]:
+        axes = curve_figure(path, over=one["name"]).axes[0]
+        assert one["x"] == axes.lines[0].get_xdata().tolist()
+        assert one["critical"] == [one["x"][2]]
+        assert bool(one["above"]) == bool(axes.child_axes)
+
+
+def test_page_of_many_probes_draws_some_of_their_curves():
+    mesh = FakePath().discretisation.mesh
+    probes = {f"probe-{i}": tuple(mesh.points[i]) for i in range(len(mesh.points))}
+    path = FakePath(probes=probes)
+    about = header(page(path))
+    drawn = {line["label"] for line in about["curves"][0]["lines"]}
+    assert about["curves"][0]["note"] == f"{len(drawn)} of {len(probes)} probes are drawn; history.csv has all."
+    assert len(about["curves"][0]["lines"]) <= MOST_CURVES
+    assert {one["name"]: one["node"] for one in about["probes"]} == path.model.probe_nodes
+    for one in about["probes"]:
+        colours = {line["colour"] for line in about["curves"][0]["lines"] if line["label"] == one["name"]}
+        assert colours == ({one["colour"]} if one["colour"] else set())
 
 
 def test_path_without_steps_is_bad_input():

@@ -6,6 +6,7 @@ import ctypes.util
 import inspect
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,9 +17,11 @@ from magshell.errors import InputError
 from magshell.evaluation.converged import converged
 from magshell.magnetics.fields.uniform import UniformField
 from magshell.output import rendering
-from magshell.output.curve import curve_figure
+from magshell.output.abscissa import abscissae
+from magshell.output.curve import curve_figure, displacements
 from magshell.output.pictures import draw_curve, draw_pictures, draw_shape
 from magshell.output.scene import best_axes, draw, fit, viewing_axes
+from magshell.output.series import MOST_CURVES, some
 from magshell.output.skin import skin_of
 from magshell.output.tessellation import Tessellation, element_edges
 from magshell.shell.shape_functions import NODES
@@ -182,14 +185,90 @@ def test_curve_marks_critical_points(path):
         assert np.abs(np.array(u) - line.get_ydata()).min() < 1e-12
 
 
-def test_curve_of_a_field_that_turns_has_the_load_parameter_below(path):
-    field = UniformField((0.0, 0.0, 20e-3), history=(1, 1), rotation_axis=(0, 1, 0), rotation=(0, 1))
-    path.model.field = field
-    path.steps[4].stage = 1
+def test_curve_of_a_field_that_turns_is_over_its_angle(path):
+    """Raised in the first stage, turned in the second; |B| and the load factor are there when asked for."""
+    path.model.field = UniformField((0.0, 0.0, 20e-3), history=(1, 1), rotation_axis=(0, 1, 0), rotation=(0, 1))
+    path.courses = [turning(start=(0.0, 0.0), end=(1.0, 0.0)), turning(start=(1.0, 0.0), end=(1.0, np.pi / 2))]
+    for step in path.steps[2:]:
+        step.stage = 1
+    path.critical_points = [path.steps[3]]
     axes = curve_figure(path).axes[0]
-    assert axes.get_xlabel() == "load factor"
+    assert axes.get_xlabel() == "angle of the field (°)"
     assert not axes.child_axes
-    assert list(axes.lines[0].get_xdata()) == [0.0, 0.1, 0.3, 0.6, 2.0]
+    np.testing.assert_allclose(axes.lines[0].get_xdata(), [0.0, 0.0, 27.0, 54.0, 90.0])
+    (diamond,) = {
+        float(line.get_xdata()[0]) for line in axes.lines if line.get_marker() == "D" and len(line.get_xdata())
+    }
+    assert diamond == pytest.approx(54.0)
+    assert [one.name for one in abscissae(path)] == ["field.angle", "field", "load_factor"]
+    axes = curve_figure(path, over="load_factor").axes[0]
+    assert axes.get_xlabel() == "load factor"
+    np.testing.assert_allclose(axes.lines[0].get_xdata(), [0.0, 0.1, 1.3, 1.6, 2.0])
+    path.steps[4].flux_density = np.array([20e-3, 0.0, 0.0])
+    assert curve_figure(path, over="field").axes[0].lines[0].get_xdata()[-1] == pytest.approx(20.0), "its magnitude"
+    with pytest.raises(InputError, match=r"no 'angle' to draw curves over. Did you mean 'field.angle'"):
+        curve_figure(path, over="angle")
+
+
+def turning(start, end):
+    """A stage through which the amounts of the field, multiplier and angle, go from start to end."""
+    start, end = np.array(start), np.array(end)
+    return SimpleNamespace(amounts=lambda load: SimpleNamespace(drives=start + load * (end - start)))
+
+
+def test_curves_can_be_drawn_over_what_moves(path):
+    """A magnet that is switched on, moved and turned; what stays is not offered."""
+    path.model.field = SimpleNamespace(drives=("near.multiplier", "near.d1", "near.d3", "near.angle", "coil.current1"))
+    path.courses = [turning((0.0, 0.0, 0.0, 0.0, 0.0), (1.0, 0.0, -20e-3, -np.pi, 2.0))]
+    found = {one.name: one for one in abscissae(path)}
+    assert list(found) == ["near.angle", "load_factor", "near.multiplier", "near.d3", "coil.current1"]
+    ends = {name: (one.text, one.of(path.steps)[-1]) for name, one in found.items()}
+    assert ends == {
+        "near.angle": ("angle of near (°)", pytest.approx(-180.0)),
+        "load_factor": ("load factor", 1.0),
+        "near.multiplier": ("multiplier of near", 1.0),
+        "near.d3": ("displacement of near along X₃ (mm)", pytest.approx(-20.0)),
+        "coil.current1": ("current 1 of coil (A)", 2.0),
+    }
+
+
+def test_of_many_probes_some_are_drawn_and_the_picture_says_how_many():
+    """The farthest and the stillest are among them, and the legend is in the picture."""
+    mesh = FakePath().discretisation.mesh
+    probes = {f"probe with number {i}": tuple(mesh.points[i]) for i in range(len(mesh.points))}
+    path = FakePath(probes=probes)
+    figure = curve_figure(path)
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    drawn = {curve.name for curve in some(displacements(path))[0]}
+    assert 4 <= len(drawn) <= MOST_CURVES
+    u = {name: np.abs(path.steps[-1].state.u[node]).max() for name, node in path.model.probe_nodes.items()}
+    moving = {curve.name for curve in displacements(path)}
+    assert {max(u, key=u.get), min(moving, key=u.get)} <= drawn
+    assert f"{len(drawn)} of {len(probes)} probes are drawn; history.csv has all." in " ".join(labels[-1].split("\n"))
+    assert inside(figure)
+    assert len({line.get_color() for line in figure.axes[0].lines[:-2]}) > len(drawn) / 2
+
+
+def inside(figure):
+    """Whether the legend is."""
+    figure.draw_without_rendering()
+    box, page = figure.legends[0].get_window_extent(), figure.bbox
+    return page.x0 <= box.x0 and box.x1 <= page.x1 and page.y0 <= box.y0 and box.y1 <= page.y1
+
+
+@pytest.mark.parametrize("many", [20, 120])
+def test_legend_of_long_names_and_many_columns_stays_in_the_picture(many):
+    """Smaller letters, broken lines; beyond that it says how many more there are."""
+    probes = {f"{i}: {'a very long $name_' * 9}": (LENGTH, 0, RADIUS) for i in range(3)}
+    probes |= {f"p{i}": (LENGTH, RADIUS, 0) for i in range(many)}
+    path = FakePath(probes=probes)
+    assert inside(curve_figure(path))
+    figure = curve_figure(path, [f"{name}.u3" for name in probes])
+    assert inside(figure)
+    texts = [text.get_text() for text in figure.legends[0].get_texts()]
+    if many == 120:
+        assert texts[-1] == f"and {many + 3 - len(texts) + 1 + 1} more", texts[-3:]
+    assert figure.axes[0].get_position().width > 0.4
 
 
 def test_curve_of_a_reversed_field_runs_to_the_left(path):

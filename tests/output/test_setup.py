@@ -25,8 +25,9 @@ from magshell.output.marks import (
     support_marks,
 )
 from magshell.output.scene import viewing_axes
-from magshell.output.setup import INCHES, _legend, draw_setup, tints
+from magshell.output.setup import INCHES, _legend, draw_setup, setup_scene, tints
 from magshell.output.style import DPI
+from magshell.output.turns import field_turns, turn_marks
 
 LENGTH, WIDTH = 20e-3, 6e-3
 RUBBER = ms.MicropolarNeoHookean(303e3, 7300e3, 30.3e3, 1e-4)
@@ -177,12 +178,106 @@ def legend(element_groups):
 def test_the_legend_has_the_groups_that_show():
     """Of one that others cover there is no tint in the picture."""
     figure = legend({"all": [0, 1], "left": [0], "tongue": [1]})
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["remanence, 100 mT", "left", "tongue"]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["remanence, 100\u00a0mT", "left", "tongue"]
 
 
 def test_the_legend_fits():
     figure = legend({"MAGNETISIERUNGSKLAPPENAUSSEN": [0], "lower": [1]})
     assert figure.legends[0].get_window_extent().x1 < figure.bbox.x1
+
+
+def end_of(mark):
+    """Angle of the arc's end about the axis, from its beginning."""
+    centre, axis = mark.places[0], mark.vectors[0] / np.linalg.norm(mark.vectors[0])
+    first, last = mark.arc[0] - centre, mark.arc[-1] - centre
+    radius = np.linalg.norm(mark.vectors[0])
+    assert np.linalg.norm(mark.arc - centre, axis=1) == pytest.approx(radius)
+    assert np.abs((mark.arc - centre) @ axis).max() < 1e-12 * radius
+    return np.arctan2(np.cross(first, last) @ axis, first @ last)
+
+
+def test_prescribed_rotations_are_arcs_about_their_axis():
+    """As far as the group is turned, in its direction, about the point that it is turned about, with the angle."""
+    model = strip()
+    through = (0.0, WIDTH, 1e-3)
+    supports = [
+        ms.Turn("left", (0, 2, 0), -np.pi / 3, through),
+        ms.Prescribe("right", "omega", 1, np.pi / 2),
+        ms.Prescribe("right", "u", 3, 1e-3),
+        ms.Prescribe("right", "omega", 2),
+    ]
+    model = ms.Model(model.shell, supports, model.field)
+    turn, twist = turn_marks(model, LENGTH)
+    assert turn.places[0] == pytest.approx(through)
+    assert twist.places[0] == pytest.approx((LENGTH, WIDTH / 2, 0))
+    assert end_of(turn) * np.sign(turn.vectors[0] @ (0, 1, 0)) == pytest.approx(-np.pi / 3)
+    assert end_of(twist) * np.sign(twist.vectors[0] @ (1, 0, 0)) == pytest.approx(np.pi / 2)
+    assert [mark.letters[0][0] for mark in (turn, twist)] == ["60°", "90°"]
+    assert [mark.name for mark in support_marks(model, LENGTH, AXES)][:1] == ["left: turned by -60 deg"]
+    assert turn_marks(strip(), LENGTH) == []
+
+
+def test_turns_of_the_field_are_arcs_at_its_arrow():
+    """One for each stage that turns it, from where it is; of more than a turn the picture says how far."""
+    turning = ms.UniformField(
+        (0, 1e-3, 5e-3), history=(1, 1, 1, 1), rotation_axis=(0, 1, 0), rotation=(0, np.pi / 2, np.pi / 2, 5 * np.pi)
+    )
+    model = strip(field=turning, stages=[ms.Stage()] * 4)
+    arrows = field_marks(model, shown(model).reshape(-1, 3), AXES)
+    quarter, more = field_turns(model, arrows, LENGTH)
+    assert [mark.name for mark in (quarter, more)] == [
+        "field turns by 90° in stage 2",
+        "field turns by 810° in stage 4",
+    ]
+    assert np.cross(quarter.vectors[0], (0, 1, 0)) == pytest.approx(np.zeros(3))
+    begin, end = (quarter.arc[i] - quarter.places[0] for i in (0, -1))
+    radius = np.linalg.norm(begin)
+    assert begin / radius == pytest.approx((0, 0, 1))
+    assert end / radius == pytest.approx((1, 0, 0))
+    assert np.linalg.norm(np.diff(more.arc, axis=0), axis=1).sum() < 2 * np.pi * radius, "less than a full circle"
+    assert field_turns(strip(), field_marks(strip(), shown(strip()).reshape(-1, 3), AXES), LENGTH) == []
+    along = ms.UniformField((0, 5e-3, 0), history=(1, 1), rotation_axis=(0, 1, 0), rotation=(0, 1))
+    model = strip(field=along, stages=[ms.Stage()] * 2)
+    assert field_turns(model, field_marks(model, shown(model).reshape(-1, 3), AXES), LENGTH) == []
+
+
+@pytest.fixture
+def figure_of(monkeypatch):
+    """The figure of a picture before it is delivered."""
+
+    def figure(model, **options):
+        kept = []
+        monkeypatch.setattr("magshell.output.setup.deliver", lambda figure, file: kept.append(figure))
+        draw_setup(model, None, **options)
+        kept[0].draw_without_rendering()
+        return kept[0]
+
+    return figure
+
+
+def test_names_of_many_probes_do_not_cover_each_other(figure_of, can_draw):
+    """Those without room are left out, and the legend says how many."""
+    mesh = ms.mesh.rectangle(LENGTH, WIDTH, (20, 6))
+    probes = {f"probe-{i}": tuple(point) for i, point in enumerate(mesh.points[::8])}
+    figure = figure_of(strip(probes=probes))
+    written = [text for text in figure.axes[0].texts if text.get_text().startswith("probe-")]
+    boxes = np.array([text.get_window_extent().extents for text in written])
+    a, b = boxes[:, None], boxes[None]
+    assert ((a[..., :2] < b[..., 2:]) & (a[..., 2:] > b[..., :2])).all(axis=-1).sum() == len(written) > 10
+    words = " ".join(" ".join(text.get_text().split()) for text in figure.legends[0].get_texts())
+    assert f"probes, {len(written)} of {len(probes)} named" in words
+
+
+def test_a_long_name_does_not_cover_its_probe(figure_of, can_draw):
+    model = strip(probes={"a-long-name-of-the-tip": (LENGTH, 0, 0)})
+    figure = figure_of(model)
+    axes = figure.axes[0]
+    (text,) = (text for text in axes.texts if "long" in text.get_text())
+    camera = setup_scene(model, tuple(axes.images[0].get_array().shape[1::-1])).camera
+    x, y = axes.transAxes.transform(camera.on_picture(np.array([LENGTH, 0, 0])))
+    radius = 0.5 * 0.016 * LENGTH * axes.bbox.width / (2 * camera.half_width)
+    left, bottom, right, top = text.get_window_extent().extents
+    assert max(left - x, x - right, bottom - y, y - top) > radius
 
 
 def test_picture(tmp_path, can_draw):
@@ -216,7 +311,7 @@ def test_rigid_bodies_magnets_and_hinges():
     nodes = mesh.points[mesh.nodes_of("right")]
     assert np.linalg.norm(body.places[:, None] - nodes[None], axis=2).min(axis=1).max() < body.width
     assert np.cross(magnet.vectors[0], X3) == pytest.approx([0, 0, 0], abs=1e-15)
-    assert np.linalg.norm(magnet.places[0] - nodes.mean(axis=0)) < 0.05 * LENGTH
+    assert np.linalg.norm(magnet.places[0] - 0.5 * magnet.vectors[0] - nodes.mean(axis=0)) < 0.05 * LENGTH
     (hinge,) = hinge_marks(model, LENGTH, AXES)
     assert hinge.name == "fold: hinge, 1 mN/rad"
     assert np.linalg.norm(hinge.vectors, axis=1).sum() == pytest.approx(WIDTH)

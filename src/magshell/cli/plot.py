@@ -23,12 +23,15 @@ examples:
   magshell plot results --color energy --steps 0,5,-1
   magshell plot results --steps all --out pictures
   magshell plot results --curves foot.R3,foot.R1     these columns of history.csv in curve.png
+  magshell plot results --over field.angle           curves over the angle of a field that turns
   magshell plot results --animate shape.gif          also the path as an animation
   magshell plot results --animate shape.gif --seconds 8 --smooth --camera 1,-1,0.5
   magshell plot results --animate shape.mp4          as a video: pip install 'magshell[video]'
 
 Without --steps the shapes are spread evenly along the path. All of them are seen by one camera, in one scale of colours
 and true to scale. OUTPUT is a name or symbol of the results: u3, u, energy, rotation, thickness_ratio, remanence, ...
+NAME is field (|B|, mT), load_factor, or an amount of the field that varies: field.angle, magnet.angle, magnet.d3, ...
+Without --over it is |B| of a uniform field, the angle of what turns, or else the load factor.
 Every frame of an animation is a converged step, seen for as long as the path is to the next one; the last is held.
 --smooth interpolates linearly between the steps.
 A run that was interrupted, or that is still going on, is drawn as far as it got."""
@@ -40,6 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--color", metavar="OUTPUT", default="u3", help="what colours the shapes (default: u3)")
     parser.add_argument("--steps", metavar="N,N,...", help="numbers of steps, negative from the end; or: all")
     parser.add_argument("--curves", metavar="NAME,NAME,...", help="columns of history.csv to draw, all of one unit")
+    parser.add_argument("--over", metavar="NAME", help="what curves are drawn over: field, load_factor, field.angle, …")
     parser.add_argument("--animate", metavar="FILE", help="also write an animation: .gif, or .mp4 with an extra")
     parser.add_argument("--seconds", metavar="S", type=float, default=4.0, help="length of the animation (default: 4)")
     parser.add_argument("--smooth", action="store_true", help="also frames between the steps, linearly interpolated")
@@ -51,6 +55,7 @@ def run(given: argparse.Namespace) -> int:
     """Draw."""
     from magshell.evaluation.outputs import find
     from magshell.files import refuse_to_replace
+    from magshell.output.abscissa import abscissa
     from magshell.output.animation import animate, draw_steps, require_writer
     from magshell.output.curve import draw_curve
     from magshell.output.rendering import RenderingUnavailable
@@ -67,13 +72,14 @@ def run(given: argparse.Namespace) -> int:
     columns = [name.strip() for name in given.curves.split(",")] if given.curves is not None else []
     if columns:
         chosen(path, columns)
+    abscissa(path, given.over)
     directory = made(pathlib.Path(given.out or given.directory))
     if not is_one(directory):
         names = ["curve.png", *(f"shape-{step.number:04d}.png" for step in steps)]
         own = [name for name in names if (directory / name).is_file() and not is_ours(directory / name)]
         refuse_to_replace(directory, own)
     out = console()
-    draw_curve(path, directory / "curve.png", columns)
+    draw_curve(path, directory / "curve.png", columns, given.over)
     say(out, f"picture: {directory / 'curve.png'}")
     try:
         with bar(out, "drawing shapes") as advance:

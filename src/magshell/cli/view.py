@@ -18,8 +18,9 @@ examples:
 
 The page shows the deformed shape in three dimensions (drag to rotate, wheel to zoom, drag with the right button or with
 shift to pan; two fingers on a touch screen), a slider over the steps (arrow keys, space to play), every output as a
-colour, and the curves of the probes (click a mark to go to its step). It needs no network and no other file: send it
-to anybody. A run that was interrupted, or that is still going on, is shown as far as it got."""
+colour, the value under the pointer, the probes, and their curves over the field, its angle or the load factor (click a
+mark to go to its step). It saves pictures, the solid body and history.csv. It needs no network and no other file: send
+it to anybody. A run that was interrupted, or that is still going on, is shown as far as it got."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -67,7 +67,7 @@ class Turn(Support):
     @property
     def legend(self) -> str:
         """In pictures."""
-        return "turned"
+        return f"turned by {quantity(float(self.angle), ANGLE)}"
 
     def conditions(self) -> Iterator[Condition]:
         """Six on the rigid body."""

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.magnetics.fields import UniformField
+from magshell.output.abscissa import FIELD, abscissa
 from magshell.output.rounding import STILL
-from magshell.output.series import COMPONENTS, Curve, chosen
+from magshell.output.series import COMPONENTS, WIDEST_NAME, Curve, chosen, some
 from magshell.output.style import ACCENT, COLOURS, DPI, TEXT, TICKS, deliver
 
 if TYPE_CHECKING:
@@ -24,23 +25,31 @@ if TYPE_CHECKING:
     from magshell.solver.step import Step
 
 NEGLIGIBLE = 0.01
-FIELD = r"$|B^\mathrm{ext}|$ (mT)"
 LOAD = r"$10^3\,|B^\mathrm{ext}|\,|B^\mathrm{rem}|\,/\,(\mu\,\mu_0)$"
 LOAD_TEXT = "10³ |B| |Bʳᵉᵐ| / (µ µ₀)"
+ROUND, DEGREES = (1, 2, 5, 10), (1, 1.5, 3, 4.5, 9, 10)
+INCHES = (9.0, 5.6)
+LEGEND_POINTS, SMALLEST_POINTS = 14.0, 6.5
+LINE = 1.9
+"""Height of a line of the legend, over the size of its letters."""
 CRITICAL: dict[str, Any] = {
     "linestyle": "none", "marker": "D", "markersize": 7, "color": ACCENT, "markeredgecolor": "white",
 }  # fmt: skip
 
 
 def draw_curve(
-    path: Path, file: str | os.PathLike[str] | None = "curve.png", columns: Sequence[str] = ()
+    path: Path,
+    file: str | os.PathLike[str] | None = "curve.png",
+    columns: Sequence[str] = (),
+    over: str | None = None,
 ) -> Image | None:
     """Draw displacement against field at every probe, with a mark at every converged step, hollow if unstable.
 
     The field is given in mT below, negative where it is reversed, and above as the load 10³ |Bext| |Brem| / (mu mu0)
-    of the literature, with the largest |Brem| of the shell. Components below 1 % of the largest are left out. Without
-    probes the largest displacement anywhere is drawn; where there is no field, or one that turns, the load factor
-    (plus the number of the stages before) takes its place. Limit points and bifurcations are marked with diamonds.
+    of the literature, with the largest |Brem| of the shell. Where the field or a magnet turns, its angle takes its
+    place, and where there is no uniform field the load factor (plus the number of the stages before). Components below
+    1 % of the largest are left out. Of many probes some are drawn, and the picture says how many. Without probes the
+    largest displacement anywhere is drawn. Limit points and bifurcations are marked with diamonds.
 
     Parameters
     ----------
@@ -49,6 +58,9 @@ def draw_curve(
         PNG file to write; None to get the picture instead.
     columns : sequence of str, optional
         Columns of the history to draw in place of the displacements, of one unit: `tip.R3`, `elastic`.
+    over : str, optional
+        What they are drawn against: `field` (|B|), `load_factor`, or an amount of the field that varies along the path,
+        such as `field.angle` or `magnet.d3`.
 
     Returns
     -------
@@ -58,28 +70,30 @@ def draw_curve(
     Raises
     ------
     InputError
-        No such column, or columns of several units.
+        No such column or abscissa, or columns of several units.
     OSError
         The disk refuses; the message names the file.
     """
-    return deliver(curve_figure(path, columns), file)
+    return deliver(curve_figure(path, columns, over), file)
 
 
-def curve_figure(path: Path, columns: Sequence[str] = ()) -> Figure:
+def curve_figure(path: Path, columns: Sequence[str] = (), over: str | None = None) -> Figure:
     """The picture of `draw_curve` as a matplotlib figure, to go on working on."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(9.0, 5.6), dpi=DPI, facecolor="white")
+    figure = Figure(figsize=INCHES, dpi=DPI, facecolor="white")
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.12)
     axes = figure.subplots()
-    field, x = abscissa(path)
+    along = abscissa(path, over)
+    x, critical, note = along.of(path.steps), along.of(path.critical_points), ""
     unstable = np.array([bool(step.negative_pivots) for step in path.steps])
-    _, critical = abscissa(path, path.critical_points)
     if columns:
         group = chosen(path, columns)
         title, factor, every, critical = group.title, group.factor, group.curves, critical[:0]
     else:
-        title, factor, every = "displacement (mm)", 1e3, displacements(path, [*path.steps, *path.critical_points])
+        points: list[Step | CriticalPoint] = [*path.steps, *path.critical_points]
+        every, note = some(displacements(path, points), len(path.model.probe_nodes))
+        title, factor = "displacement (mm)", 1e3
     for curve in sorted(every, key=lambda curve: -curve.values[len(x) - 1]):
         values, at_critical = curve.values[: len(x)], curve.values[len(x) :]
         label, style = curve.label, curve.style
@@ -92,34 +106,35 @@ def curve_figure(path: Path, columns: Sequence[str] = ()) -> Figure:
         axes.plot([], [], label="critical point", **CRITICAL)
     if unstable.any():
         axes.plot([], [], "o", color="#6b7280", markerfacecolor="white", markersize=6, label="unstable")
+    if note:
+        axes.plot([], [], linestyle="none", label=fill(note, WIDEST_NAME))
     axes.axhline(0, color="#9aa3ad", linewidth=0.8, zorder=1)
-    axes.set_xlabel(FIELD if field else "load factor", **TEXT)
+    axes.set_xlabel(along.label, **TEXT)
     axes.set_ylabel(title, **TEXT)
-    dress(axes)
-    scale = load_per_mT(path) if field else 0.0
+    dress(axes, DEGREES if along.name.endswith(".angle") else ROUND)
+    scale = load_per_mT(path) if along.name == FIELD else 0.0
     if scale > 0:
         second_axis(axes, scale, LOAD)
     else:
         axes.spines["top"].set_visible(False)
-    figure.legend(loc="outside right center", frameon=False, fontsize=14, handlelength=2.6, labelspacing=0.7)
+    _legend(figure, axes)
     return figure
 
 
-def abscissa(path: Path, points: Sequence[Step | CriticalPoint] | None = None) -> tuple[bool, FloatArray]:
-    """Whether the field is what steps are drawn against, and it (mT, negative where reversed) or the load parameter.
-
-    Parameters
-    ----------
-    path : Path
-    points : sequence of Step or CriticalPoint, optional
-        Where; at the steps of the path without it.
-    """
-    field = path.model.field
-    points = path.steps if points is None else points
-    if not isinstance(field, UniformField) or field.magnitude == 0.0 or field.rotation is not None:
-        return False, np.array([point.stage + point.load_factor for point in points])
-    along = field.vector / field.magnitude
-    return True, np.array([1e3 * float(point.flux_density @ along) for point in points])
+def _legend(figure: Figure, axes: Axes) -> None:
+    """Beside the axes; in smaller letters if there are many lines, and no more lines than fit."""
+    handles, labels = axes.get_legend_handles_labels()
+    lines = np.cumsum([1 + label.count("\n") for label in labels])
+    room = 0.92 * 72.0 * INCHES[1] / LINE
+    shown = int(np.searchsorted(lines, room / SMALLEST_POINTS - 1.0, side="right"))
+    if shown < len(labels):
+        left_out = axes.plot([], [], linestyle="none")
+        handles, labels = [*handles[:shown], *left_out], [*labels[:shown], f"and {len(labels) - shown} more"]
+    size = min(LEGEND_POINTS, max(SMALLEST_POINTS, room / lines[min(shown, len(lines) - 1)]))
+    figure.legend(
+        handles, labels, loc="outside right center", frameon=False, fontsize=size, handlelength=2.6,
+        labelspacing=LINE - 1.2,
+    )  # fmt: skip
 
 
 def displacements(path: Path, points: Sequence[Step | CriticalPoint] | None = None) -> list[Curve]:
@@ -148,12 +163,12 @@ def curves(path: Path) -> list[tuple[str, FloatArray, dict[str, Any]]]:
     return [(curve.label, curve.values, curve.style) for curve in displacements(path)]
 
 
-def dress(axes: Axes) -> None:
-    """Give the axes of a curve the house style."""
+def dress(axes: Axes, steps: Sequence[float] = ROUND) -> None:
+    """Give the axes of a curve the house style; `steps` are those between ticks, from 1 to 10."""
     from matplotlib.ticker import MaxNLocator
 
     axes.margins(x=0.02)
-    axes.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
+    axes.xaxis.set_major_locator(MaxNLocator(6, steps=steps))
     axes.grid(color="#e5e7eb", linewidth=0.8)
     axes.spines["right"].set_visible(False)
     axes.tick_params(**TICKS)
@@ -165,7 +180,7 @@ def second_axis(axes: Axes, factor: float, label: str) -> None:
 
     above = axes.secondary_xaxis("top", functions=(_times(factor), _times(1 / factor)))
     above.set_xlabel(label, labelpad=8, **TEXT)
-    above.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
+    above.xaxis.set_major_locator(MaxNLocator(6, steps=ROUND))
     above.tick_params(**TICKS)
 
 

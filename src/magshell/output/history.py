@@ -50,8 +50,7 @@ class HistoryWriter(Observer):
     def resumed(self, path: Path) -> None:
         """The rows of the steps so far, whatever the file was."""
         self._history = path.history
-        lines = [csv_line(self._history.columns), *map(_line, self._history.rows(path.steps))]
-        write_atomically(self.file, "".join(lines).encode())
+        write_atomically(self.file, history_text(path).encode())
 
     def kept(self, path: Path) -> None:
         """The path has the numbers of its steps."""
@@ -60,6 +59,11 @@ class HistoryWriter(Observer):
     def converged(self, step: Step) -> None:
         """Append one row."""
         append_line(self.file, _line(self._history.row(step)))
+
+
+def history_text(path: Path) -> str:
+    """The whole file of a path."""
+    return "".join([csv_line(path.history.columns), *map(_line, path.history.rows(path.steps))])
 
 
 def _line(row: list[Number]) -> str:

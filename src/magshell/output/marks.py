@@ -22,6 +22,7 @@ REMANENCE, LOAD, SUPPORTS = COLOURS[0], COLOURS[3], (COLOURS[2], COLOURS[4], COL
 BODIES, HINGES = (COLOURS[1], COLOURS[7 % len(COLOURS)]), (ACCENT, INK)
 MOST_ARROWS = 110
 MOST_POSTS = 40
+MOST_NAMES = 40
 MOST_OF_A_LOAD = 12
 EVENING = 8
 LONGEST, SHORTEST = 0.11, 0.03
@@ -30,6 +31,7 @@ SAME = 1e-9
 TIP = 0.11
 """Radius of an arrow's head, and of a coil, over its length."""
 COIL_TURNS = 5
+MOST_OF_A_TURN = np.radians(320.0)
 
 
 class Solids(Enum):
@@ -40,6 +42,7 @@ class Solids(Enum):
     BALLS = ("o", 7.0)
     COILS = ("$\\wr$", 13.0)
     BARS = ("_", 16.0)
+    TURNS = ("$\\circlearrowleft$", 15.0)
 
     @property
     def marker(self) -> str:
@@ -63,13 +66,17 @@ class Mark:
     colour : str
     solids : Solids
     places : FloatArray, shape (n, 3)
-        Middles of arrows, coils, bars, cubes and balls, m.
+        Middles of arrows, coils, bars, cubes, balls and turns, m.
     vectors : FloatArray, shape (n, 3)
-        Of arrows, coils and bars, as long as they are drawn, m.
+        Of arrows, coils and bars, as long as they are drawn, m; of turns, the axis, as long as the radius.
     width : float
         Of cubes and balls, and how thick bars are, m.
     letters : list of (str, FloatArray (3,), (float, float))
-        Text, its place and how far from it, in points.
+        Text, its place, and in which direction of the picture it stands beside it; (0, 0): on it.
+    start : FloatArray, shape (3,)
+        Of turns: the direction, normal to the axis, in which the arc begins.
+    angle : float
+        Of turns, rad; more than `MOST_OF_A_TURN` is not drawn.
     """
 
     name: str
@@ -79,16 +86,39 @@ class Mark:
     vectors: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
     width: float = 0.0
     letters: Sequence[tuple[str, FloatArray, tuple[float, float]]] = ()
+    start: FloatArray = field(default_factory=lambda: np.zeros(3))
+    angle: float = 0.0
 
     @property
     def extent(self) -> FloatArray:
         """Points (m, 3) that the picture must hold."""
         if not len(self.vectors):
             return self.places
+        if self.solids is Solids.TURNS:
+            radius = 1.3 * float(np.linalg.norm(self.vectors, axis=1).max())
+            return np.concatenate([self.places + side for side in radius * np.concatenate([np.eye(3), -np.eye(3)])])
         beyond = 0.7 if self.letters else 0.5
         ends = np.concatenate([self.places - 0.5 * self.vectors, self.places + beyond * self.vectors])
         aside = TIP * float(np.linalg.norm(self.vectors, axis=1).max(initial=0.0)) * np.eye(3)
         return np.concatenate([ends + side for side in (*aside, *-aside)])
+
+    @property
+    def covered(self) -> FloatArray:
+        """Points (m, 3) all over what is drawn, for letters that keep clear of it."""
+        if self.solids is Solids.TURNS:
+            return np.concatenate([self.arc, self.places + np.linspace(-1.0, 1.0, 9)[:, None] * self.vectors])
+        if not len(self.vectors):
+            return self.places
+        along = np.linspace(-0.5, 0.5, 9)[:, None, None]
+        return (self.places + along * self.vectors).reshape(-1, 3)
+
+    @property
+    def arc(self) -> FloatArray:
+        """Points (m, 3) of a turn, from its beginning to its end."""
+        radius = float(np.linalg.norm(self.vectors[0]))
+        across = np.cross(self.vectors[0] / radius, self.start)
+        angle = np.linspace(0.0, np.clip(self.angle, -MOST_OF_A_TURN, MOST_OF_A_TURN), 65)[:, None]
+        return self.places[0] + radius * (np.cos(angle) * self.start + np.sin(angle) * across)
 
     def place(self, plotter: Any) -> None:
         """Add it to a plotter."""
@@ -106,6 +136,8 @@ class Mark:
                 tip_resolution=32, shaft_resolution=24,
             )  # fmt: skip
             body = points.glyph(orient="vector", scale="length", factor=1.0, geom=solid)
+        elif self.solids is Solids.TURNS:
+            body = self._turn()
         elif self.solids is Solids.BARS:
             ends = np.stack([self.places - 0.5 * self.vectors, self.places + 0.5 * self.vectors], axis=1)
             body = polylines(ends).tube(radius=0.5 * self.width, n_sides=12)
@@ -116,6 +148,23 @@ class Mark:
         plotter.add_mesh(
             body, color=self.colour, smooth_shading=self.solids is Solids.BALLS, ambient=0.62, specular=0.08
         )
+
+    def _turn(self) -> Any:
+        """The arc with a head, and the axis."""
+        import pyvista
+
+        arc, axis = self.arc, self.vectors[0]
+        radius = float(np.linalg.norm(axis))
+        head = 0.3 * radius
+        shaft = arc[: max(2, int(np.searchsorted(-np.linalg.norm(arc - arc[-1], axis=1), -0.8 * head)))]
+        along = unit((arc[-1] - shaft[-1])[None])[0]
+        cone = pyvista.Cone(
+            center=arc[-1] - 0.5 * head * along, direction=along, height=head, radius=0.4 * head, resolution=32
+        )
+        ends = np.stack([self.places[0] - axis, self.places[0] + axis])
+        parts = [polylines(shaft[None]).tube(radius=0.045 * radius, n_sides=16)]
+        parts += [polylines(ends[None]).tube(radius=0.02 * radius, n_sides=12), cone]
+        return pyvista.merge([part.extract_surface(algorithm=None) for part in parts])
 
 
 def _coil() -> Any:
@@ -218,10 +267,11 @@ def field_marks(model: Model, extent: FloatArray, axes: FloatArray) -> list[Mark
     tail = np.array([low[0] - 0.06 * size - across, (low[1] + high[1]) / 2, high[2]]) @ axes
     tail = tail - 0.5 * vectors.mean(axis=0)
     several = len(fields) > 1
+    where = "" if model.field.is_uniform else " at the centre"
     marks = []
     for (stage, flux), vector in zip(fields, vectors, strict=True):
         letter = f"$B_{{{stage + 1}}}$" if several else "$B$"
-        name = f"field{f' {stage + 1}' if several else ''}, {show(float(np.linalg.norm(flux)), FLUX_DENSITY)}"
+        name = f"field{f' {stage + 1}' if several else ''}{where}, {show(float(np.linalg.norm(flux)), FLUX_DENSITY)}"
         head = tail + 1.12 * vector
         marks.append(
             Mark(
@@ -273,7 +323,7 @@ def body_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:
         strength = float(np.linalg.norm(body.moment))
         if strength:
             arrow = 0.13 * size * np.asarray(body.moment) / strength
-            place = body.reference_point(mesh) + 0.02 * size * axes[2]
+            place = body.reference_point(mesh) + 0.5 * arrow + 0.02 * size * axes[2]
             name = f"{body.name}: magnetic moment, {show(strength, MAGNETIC_MOMENT)}"
             marks.append(Mark(name, REMANENCE, Solids.ARROWS, place[None], arrow[None]))
     return marks
@@ -331,17 +381,18 @@ def load_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:
 
 
 def probe_marks(model: Model, size: float, axes: FloatArray) -> list[Mark]:
-    """A ball and a name at each probe."""
+    """A ball at each probe, and a name at each of up to `MOST_NAMES`."""
     nodes = list(model.probe_nodes.values())
     if not nodes:
         return []
     places = model.shell.mesh.points[nodes]
     centre = model.shell.mesh.points.mean(axis=0)
     letters = []
-    for name, place in zip(model.probe_nodes, places, strict=True):
+    names = list(model.probe_nodes)
+    for name, place in ((names[i], places[i]) for i in spread_out(places, MOST_NAMES)):
         away = (place - centre) @ axes[:2].T
         length = float(np.linalg.norm(away))
         direction = away / length if length > 1e-3 * size else np.array([0.0, 1.0])
         text = name.replace("$", r"\$")
-        letters.append((text, place, (float(15 * direction[0]), float(15 * direction[1]))))
+        letters.append((text, place, (float(direction[0]), float(direction[1]))))
     return [Mark("probes", INK, Solids.BALLS, places + 0.01 * size * axes[2], width=0.016 * size, letters=letters)]

@@ -17,7 +17,8 @@ from magshell.arrays import FloatArray
 from magshell.magnetics.fields import UniformField
 from magshell.model.parts import Part
 from magshell.model.words import name_of, offset_of, thickness_of
-from magshell.output.curve import FIELD, abscissa, curves, dress
+from magshell.output.abscissa import abscissa
+from magshell.output.curve import curves, dress
 from magshell.output.scene import best_axes
 from magshell.output.sketch import Lines, paint, tessellate, triad
 from magshell.output.style import ACCENT, COLOURS, GREY, INK, compact_png
@@ -355,7 +356,8 @@ def _paint_size(axes: Axes, mesh: Mesh, displacement: FloatArray, values: FloatA
 
 
 def _chart(axes: Axes, path: Path) -> None:
-    field, x = abscissa(path)
+    along = abscissa(path)
+    x = along.of(path.steps)
     unstable = np.array([bool(step.negative_pivots) for step in path.steps])
     drawn = curves(path)[:MOST_NAMES]
     for label, values, style in drawn:
@@ -367,7 +369,7 @@ def _chart(axes: Axes, path: Path) -> None:
     dress(axes)
     axes.tick_params(labelsize=8)
     axes.spines["top"].set_visible(False)
-    axes.set_xlabel(FIELD if field else "load factor", fontsize=9, color=INK)
+    axes.set_xlabel(along.label, fontsize=9, color=INK)
     axes.set_ylabel("displacement (mm)", fontsize=9, color=INK)
     axes.legend(frameon=False, fontsize=8, labelcolor=INK, ncols=2 if len(drawn) > 5 else 1)
 

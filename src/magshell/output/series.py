@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from textwrap import fill
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
 COMPONENTS = (("--", "s"), (":", "^"), ("-", "o"))
 # Of the sum of the magnitudes that balance each other: what round-off leaves of them.
 ROUND_OFF = 1e-9
+MOST_CURVES = 16
+WIDEST_NAME, LONGEST_NAME = 24, 72
+"""Letters of a name in a line of a legend, and in all."""
 _NUMBERED = re.compile(r"(.*[^\d])([123])")
 
 
@@ -49,13 +53,14 @@ class Curve(NamedTuple):
     @property
     def label(self) -> str:
         """For matplotlib, with mathematics."""
+        name = _literal(fill(shorten(self.name, LONGEST_NAME), WIDEST_NAME))
         if self.symbol == "|u|":
-            return f"{self.name} $|u|$"
+            return f"{name} $|u|$"
         symbol = self.symbol
         if self.component is not None:
             letter = symbol if len(symbol) == 1 else r"\mathrm{" + symbol.replace("_", r"\_") + "}"
             symbol = f"${letter}_{self.component}$"
-        return f"{_literal(self.name)}  {symbol}".strip()
+        return f"{name}  {symbol}".strip()
 
     @property
     def letter(self) -> str:
@@ -135,6 +140,40 @@ def chosen(path: Path, names: Sequence[str]) -> Group:
     least = ROUND_OFF * _scale(path, units[first])
     told = {name: numbers[name] * bool(np.abs(numbers[name]).max() > least) for name in names}
     return Group(", ".join(sorted(kinds)), unit, factor, _curves(told))
+
+
+def some(curves: list[Curve], probes: int = 0) -> tuple[list[Curve], str]:
+    """At most `MOST_CURVES` of them, and a sentence that says how many there are, empty if all are drawn.
+
+    Curves of one name stay together. The names are spread evenly from that of the largest value to that of the
+    smallest. Of probes their number is told, else that of the curves.
+    """
+    if len(curves) <= MOST_CURVES:
+        return curves, ""
+    largest: dict[str, float] = {}
+    for curve in curves:
+        largest[curve.name] = max(float(np.abs(curve.values).max()), largest.get(curve.name, 0.0))
+    ranked = sorted(largest, key=lambda name: -largest[name])
+    drawn: list[Curve] = []
+    for count in range(min(len(ranked), MOST_CURVES), 0, -1):
+        names = {ranked[i] for i in np.linspace(0, len(ranked) - 1, count).astype(int)}
+        drawn = [curve for curve in curves if curve.name in names]
+        if len(drawn) <= MOST_CURVES:
+            break
+    drawn = drawn[:MOST_CURVES]
+    names_drawn = list(dict.fromkeys(curve.name for curve in drawn))
+    if len(names_drawn) > 1:
+        drawn = [
+            curve._replace(style=curve.style | {"color": COLOURS[names_drawn.index(curve.name) % len(COLOURS)]})
+            for curve in drawn
+        ]
+    counted = f"{len(names_drawn)} of {probes} probes" if probes else f"{len(drawn)} of {len(curves)} curves"
+    return drawn, f"{counted} are drawn; history.csv has all."
+
+
+def shorten(name: str, most: int) -> str:
+    """A name of at most so many letters."""
+    return name if len(name) <= most else f"{name[: most - 1]}…"
 
 
 def _numbers(path: Path) -> dict[str, FloatArray]:

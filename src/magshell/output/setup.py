@@ -6,6 +6,8 @@ The marks in space are made in `marks.py`; here they are rendered, labelled and 
 from __future__ import annotations
 
 import os
+import re
+from dataclasses import replace
 from itertools import chain
 from textwrap import fill
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -14,12 +16,14 @@ import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray
 from magshell.errors import InputError
-from magshell.magnetics.remanence import placed
+from magshell.magnetics.remanence import placed as in_the_template
 from magshell.mesh.edges import SIDES
 from magshell.model.words import name_of, thickness_of
 from magshell.output.joints import joints_of
+from magshell.output.lettering import BESIDE, Text, placed
 from magshell.output.marks import (
     Mark,
+    Solids,
     body_marks,
     field_marks,
     hinge_marks,
@@ -46,6 +50,7 @@ from magshell.output.sources import extent as sources_extent
 from magshell.output.sources import place as place_sources
 from magshell.output.style import DPI, GREY, INK, PALE, TEXT, deliver
 from magshell.output.tessellation import Tessellation, own_nodes
+from magshell.output.turns import field_turns, turn_marks
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -106,8 +111,7 @@ def draw_setup(
     axes = figure.add_axes(SCENE)
     axes.set_axis_off()
     axes.imshow(scene.picture, aspect="auto", interpolation="none", extent=(0, 1, 0, 1))
-    for mark in scene.marks:
-        _letter(axes, mark, scene.camera)
+    scene = scene._replace(marks=_letter(axes, scene.marks, scene.camera))
     corner = figure.add_axes((SCENE[2], 0.0, 1.0 - SCENE[2], 0.2))
     corner.set_axis_off()
     triad(corner, scene.camera.axes)
@@ -165,12 +169,14 @@ def setup_scene(model: Model, pixels: tuple[int, int], template: bool = False, b
     size = float(np.linalg.norm(np.ptp(extent, axis=0)))
     marks = remanence_marks(model, shown, axes, template)
     if not (template or bare):
-        marks += [*field_marks(model, extent, axes), *load_marks(model, size, axes)]
+        fields = field_marks(model, extent, axes)
+        marks += [*fields, *field_turns(model, fields, size), *load_marks(model, size, axes)]
         marks += [*support_marks(model, size, axes), *spring_marks(model, size, axes)]
         marks += [
             *hinge_marks(model, size, axes),
             *repeated_marks(model, size, axes),
             *body_marks(model, size, axes),
+            *turn_marks(model, size),
             *probe_marks(model, size, axes),
         ]
     stages = [] if template or bare else [pieces(model.field, now) for now in model.field.ends(len(model.stages))]
@@ -203,7 +209,7 @@ def _elsewhere(sources: list[Piece], before: list[list[Piece]]) -> list[Piece]:
 
 
 def _in_template(model: Model, at_nodes: FloatArray) -> FloatArray:
-    there = placed(model.shell.overall_remanence, model.shell.mesh, at_nodes)
+    there = in_the_template(model.shell.overall_remanence, model.shell.mesh, at_nodes)
     if there is None:
         raise InputError("remanence: no part of it has a template: nothing was magnetised in another shape")
     return there
@@ -298,24 +304,52 @@ def _place_body(plotter: Any, shell: Shell, shown: FloatArray, camera: Camera, s
         plotter.add_mesh(polylines(flat), color=PALE, **thick)
 
 
-def _letter(axes: Any, mark: Mark, camera: Camera) -> None:
+def _letter(axes: Any, marks: list[Mark], camera: Camera) -> list[Mark]:
+    """Write the letters of marks where they cover neither marks nor each other; marks that say if some had no room."""
     from matplotlib.patheffects import withStroke
 
-    for text, position, beyond in mark.letters:
-        place = camera.on_picture(position)
-        axes.annotate(
-            text,
-            place,
-            xytext=beyond,
-            xycoords="axes fraction",
-            textcoords="offset points",
-            ha="center",
-            va="center",
-            color=mark.colour,
-            fontsize=14,
-            annotation_clip=False,
-            path_effects=[withStroke(linewidth=3.0, foreground="white")],
-        )
+    def on_page(points: FloatArray) -> FloatArray:
+        return np.array([axes.transAxes.transform(camera.on_picture(point)) for point in points]).reshape(-1, 2)
+
+    point = axes.figure.dpi / 72.0
+    written, texts = [], []
+    for mark in marks:
+        for text, position, towards in mark.letters:
+            label = axes.text(
+                0.0, 0.0, text, transform=None, ha="center", va="center", color=mark.colour, fontsize=14,
+                path_effects=[withStroke(linewidth=3.0, foreground="white")],
+            )  # fmt: skip
+            box = label.get_window_extent()
+            size = (box.width + 2.0 * point, box.height)
+            written.append((mark, label))
+            texts.append(Text(on_page(position[None])[0], size, towards, mark.solids is not Solids.BALLS))
+    scale = axes.bbox.width / (2.0 * camera.half_width)
+    boxes = [_boxes(on_page(mark.covered), max(0.5 * scale * mark.width, 2.0 * point)) for mark in marks]
+    kept = [box for mark, box in zip(marks, boxes, strict=True) if mark.letters]
+    spared = [box for mark, box in zip(marks, boxes, strict=True) if not mark.letters]
+    none = np.zeros((0, 4))
+    page = np.array(axes.bbox.extents)
+    middles = placed(texts, np.concatenate([none, *kept]), np.concatenate([none, *spared]), page, BESIDE * point)
+    without: dict[int, int] = {}
+    for (mark, label), middle in zip(written, middles, strict=True):
+        if np.isnan(middle).any():
+            label.remove()
+            without[id(mark)] = without.get(id(mark), 0) + 1
+        else:
+            label.set_position(middle)
+    return [_told(mark, without.get(id(mark), 0)) for mark in marks]
+
+
+def _told(mark: Mark, without: int) -> Mark:
+    """With the number of names in the legend if some places have none."""
+    named, count = len(mark.letters) - without, len(mark.places)
+    some = mark.solids is Solids.BALLS and mark.letters and named < count
+    return replace(mark, name=f"{mark.name}, {named} of {count} named") if some else mark
+
+
+def _boxes(points: FloatArray, half: float) -> FloatArray:
+    """Squares (n, 4) about points (n, 2)."""
+    return np.concatenate([points - half, points + half], axis=1)
 
 
 def _scale_bar(figure: Any, camera: Camera) -> None:
@@ -361,9 +395,9 @@ def _legend(figure: Any, shell: Shell, scene: SetupScene, template: bool) -> Non
         names.append("undeformed")
     figure.legend(
         handles,
-        [fill(name, LETTERS_IN_A_LINE) for name in names],
+        [fill(re.sub(r"(?<=\d) (?=[^\W\d])", "\u00a0", name), LETTERS_IN_A_LINE) for name in names],
         loc="center left",
-        bbox_to_anchor=(SCENE[2] + 0.005, 0.5),
+        bbox_to_anchor=(SCENE[2] + 0.005, 0.56),
         frameon=False,
         fontsize=12.5,
         labelcolor=INK,

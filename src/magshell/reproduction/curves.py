@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.output.curve import FIELD, LOAD, abscissa, dress, load_per_mT, second_axis
+from magshell.output.abscissa import FLUX, abscissa
+from magshell.output.curve import LOAD, dress, load_per_mT, second_axis
 from magshell.output.style import COLOURS, INK, TEXT
 from magshell.reproduction.numbers import length_of
 from magshell.reproduction.references import ASPECT_RATIOS, MEASURED, MEASURED_ON, QUOTED
@@ -39,7 +40,7 @@ def load_axes(path: Path, ordinate: str, axes: Axes) -> Axes:
     dress(axes)
     axes.set_xlabel(LOAD, **TEXT)
     axes.set_ylabel(ordinate, **TEXT)
-    second_axis(axes, 1.0 / load_per_mT(path), FIELD)
+    second_axis(axes, 1.0 / load_per_mT(path), FLUX)
     return axes
 
 
@@ -56,7 +57,7 @@ def add_curve(axes: Axes, path: Path, values: FloatArray, **style: Any) -> None:
     """A smooth curve through the values at the converged steps, which are marked."""
     from scipy.interpolate import PchipInterpolator
 
-    load = load_per_mT(path) * abscissa(path)[1]
+    load = load_per_mT(path) * abscissa(path).of(path.steps)
     fine = np.linspace(load[0], load[-1], SAMPLES)
     colour = style.pop("color")
     marker, label = style.pop("marker", "o"), style.pop("label")

@@ -135,6 +135,30 @@ class Body {
     }
   }
 
+  // What is at a point between three corners of triangles: value, place, place before, element, nearest node of the mesh.
+  told(corners, shares, moved) {
+    const sum = (of) => shares.reduce((total, share, i) => total + share * of(corners[i]), 0);
+    let kind = 0, first = 0;
+    const size = ({ N, numbers }) => N.length * numbers.length;
+    while (corners[0] >= first + size(this.kinds[kind])) first += size(this.kinds[kind++]);
+    const { elements, numbers, N } = this.kinds[kind];
+    const e = Math.floor((corners[0] - first) / N.length);
+    const count = N[0].length;
+    const rows = Array.from(elements.subarray(e * count, (e + 1) * count), (n) => (this.thick ? this.nodes[n] : n));
+    const before = [0, 1, 2].map((k) => sum((corner) => {
+      const f = N[(corner - first) % N.length];
+      return rows.reduce((total, row, n) => total + f[n] * this.reference[3 * row + k], 0);
+    }));
+    const now = [0, 1, 2].map((k) => sum((corner) => this.positions[3 * corner + k]));
+    const away = (row) => Math.hypot(...now.map((x, k) => x - moved[3 * row + k]));
+    const nearest = rows.reduce((best, row) => (away(row) < away(best) ? row : best));
+    this.meshNodes ??= stored("mesh-nodes", Uint32Array);
+    const node = this.meshNodes[nearest];
+    const known = corners.every((corner) => this.values[corner] < 1e37);
+    const value = known ? sum((corner) => this.values[corner]) : NaN;
+    return { value, now, before, element: numbers[e], node };
+  }
+
   // Straight segments (start, end) along edges through nodes at these positions.
   segments(nodal, triples) {
     const pieces = this.along.length - 1;

@@ -106,6 +106,12 @@ class Camera {
     this.zoom(Math.exp(0.0015 * Math.max(-200, Math.min(200, event.deltaY))), event.clientX, event.clientY);
   }
 
+  // Zoom about the middle.
+  nearer(factor) {
+    const box = this.canvas.getBoundingClientRect();
+    this.zoom(factor, box.left + box.width / 2, box.top + box.height / 2);
+  }
+
   // Zoom by a factor; what is under (x, y) stays there.
   zoom(factor, x, y) {
     const box = this.canvas.getBoundingClientRect();

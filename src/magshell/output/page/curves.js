@@ -20,26 +20,30 @@ const MARKS = {
 const DASHES = { "-": "none", "--": "7 4", ":": "2 3" };
 
 class Curves {
-  // `steps` are those of the page; their numbers are their places in `about.x` and in `y` of each line.
-  // Of the groups of curves, the first is shown at first; the others say what differs from it.
-  constructor(plot, legend, groups, steps, chosen) {
-    Object.assign(this, { plot, legend, groups, steps });
+  // `steps` are those of the page; their numbers are their places in `x` of what curves are drawn over and in `y` of
+  // each line. The first group of curves over the first of `over` is shown at first.
+  constructor(plot, legend, groups, over, steps, chosen) {
+    Object.assign(this, { plot, legend, groups, over, steps });
     plot.addEventListener("click", (event) => {
       const step = this.nearest(event);
       if (step !== null) chosen(step);
     });
-    this.show(0);
+    this.show(0, 0);
     new ResizeObserver(() => this.draw()).observe(plot);
   }
 
-  // Make another group the shown one.
-  show(group) {
+  // Show this group over that.
+  show(group, over) {
     const { legend, groups, steps } = this;
-    const about = this.about = { ...groups[0], ...groups[group] };
+    const { name, x, label, above, critical } = this.over[over];
+    const rounds = name.endsWith(".angle") ? DEGREES : ROUND;
+    const points = groups[group].critical.map((point, i) => ({ ...point, x: critical[i] }));
+    const about = this.about = { ...groups[group], x, xlabel: label, rounds, above, critical: points };
     legend.replaceChildren();
     for (const line of about.lines) this.explain(legend, line);
     if (steps.some((step) => step.unstable)) this.remark(legend, MARKS.o, "hollow", "unstable");
     if (about.critical.length) this.remark(legend, MARKS.D, "critical", "critical point");
+    if (about.note) legend.append(Object.assign(document.createElement("li"), { textContent: about.note }));
     this.draw();
   }
 
@@ -83,7 +87,7 @@ class Curves {
     this.px = (x) => box.left + ((x - left) / (right - left)) * (box.right - box.left);
     this.py = (y) => box.bottom - ((y - below) / (above - below)) * (box.bottom - box.top);
     const middle = (box.left + box.right) / 2;
-    for (const [x, text] of ticks(left, right, Math.max(2, Math.min(7, width / 90)))) {
+    for (const [x, text] of ticks(left, right, Math.max(2, Math.min(7, width / 90)), about.rounds)) {
       svg(plot, "path", { d: `M${this.px(x)},${box.top}V${box.bottom}`, class: "grid" });
       svg(plot, "text", { x: this.px(x), y: box.bottom + 18, "text-anchor": "middle" }, text);
     }

@@ -61,10 +61,12 @@ class Quantity {
 const quantities = new Map(header.outputs.map((about) => [about.name, new Quantity(about)]));
 
 // Numbers for people: about `count` round values from low to high, and texts of them with equal decimals.
-function ticks(low, high, count) {
+const ROUND = [1, 2, 2.5, 5, 10], DEGREES = [1, 1.5, 3, 4.5, 9, 10];
+
+function ticks(low, high, count, steps = ROUND) {
   const rough = (high - low) / count;
   const power = 10 ** Math.floor(Math.log10(rough));
-  const step = power * [1, 2, 2.5, 5, 10].find((factor) => factor * power >= 0.999 * rough);
+  const step = power * steps.find((factor) => factor * power >= 0.999 * rough);
   const values = [];
   for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i++) values.push(i * step);
   const largest = Math.max(Math.abs(low), Math.abs(high));

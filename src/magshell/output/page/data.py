@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -11,20 +12,19 @@ from magshell.arrays import AnyArray, FloatArray
 from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import Output, chosen, find
 from magshell.evaluation.patches import patches_of
-from magshell.output.curve import LOAD_TEXT, abscissa, displacements, load_per_mT
+from magshell.output.history import history_text
 from magshell.output.labels import plain, shown_unit
 from magshell.output.page.arrays import quantised, span, text
+from magshell.output.page.curves import curves, over, probes
 from magshell.output.page.solid import solid
 from magshell.output.page.sources import reached, sources
 from magshell.output.page.stencils import stencils
 from magshell.output.rounding import without_round_off
 from magshell.output.scene import best_axes
-from magshell.output.series import Curve, groups
 from magshell.output.skin import MOST_ELEMENTS_WITH_EDGES, skin_of
 
 if TYPE_CHECKING:
     from magshell.mesh import Mesh
-    from magshell.solver.critical import CriticalPoint
     from magshell.solver.path import Path
     from magshell.solver.step import Step
 
@@ -64,6 +64,8 @@ def collect(path: Path, steps: Sequence[Step], color: str, advance: Callable[[fl
     levels, arrays_of_levels = solid(path, steps)
     arrays |= arrays_of_levels | {
         "points": text(mesh.points[patches.nodes], "<f4"),
+        "mesh-nodes": text(patches.nodes, "<u4"),
+        "history": base64.b64encode(history_text(path).encode()).decode(),
         "sequential": text(_colours("viridis"), "u1"),
         "diverging": text(_colours("coolwarm"), "u1"),
     }
@@ -100,9 +102,11 @@ def collect(path: Path, steps: Sequence[Step], color: str, advance: Callable[[fl
             for step, magnitude in zip(steps, magnitudes, strict=True)
         ],
         "strongest": max(magnitudes),
+        "where": "" if path.model.field.is_uniform else " at the centre",
         "stages": path.steps[-1].stage + 1,
+        "over": over(path),
         "curves": curves(path),
-        "series": series(path),
+        "probes": probes(path),
         "sources": drawn,
     }
     return Data(header, arrays)
@@ -161,55 +165,6 @@ class _Coded:
             "ranges": ranges,
         }
         return about, text(np.stack(codes), "<u2")
-
-
-def curves(path: Path) -> dict[str, Any]:
-    """The curves of `magshell.output.curve`: mT or load parameter, mm."""
-    field, x = abscissa(path)
-    points: list[Step | CriticalPoint] = [*path.steps, *path.critical_points]
-    drawn = sorted(displacements(path, points), key=lambda curve: -curve.values[len(x) - 1])
-    scale = load_per_mT(path) if field else 0.0
-    _, critical = abscissa(path, path.critical_points)
-    return {
-        "name": "displacement",
-        "x": x.tolist(),
-        "xlabel": "|B| (mT)" if field else "load factor",
-        "ylabel": "displacement (mm)",
-        "above": {"factor": scale, "label": LOAD_TEXT} if scale > 0 else None,
-        "lines": [_line(curve, 1e3 * curve.values[: len(x)]) for curve in drawn],
-        "critical": [
-            {
-                "x": float(place),
-                "y": [float(1e3 * curve.values[len(x) + number]) for curve in drawn],
-                "label": f"{point.kind}, load factor {point.load_factor:.4g} of stage {point.stage + 1}",
-            }
-            for number, (place, point) in enumerate(zip(critical, path.critical_points, strict=True))
-        ],
-    }
-
-
-def series(path: Path) -> list[dict[str, Any]]:
-    """What differs from `curves` for each group of `magshell.output.series`."""
-    return [
-        {
-            "name": group.name,
-            "ylabel": group.title,
-            "lines": [_line(curve, group.factor * curve.values) for curve in group.curves],
-            "critical": [],
-        }
-        for group in groups(path)
-    ]
-
-
-def _line(curve: Curve, values: FloatArray) -> dict[str, Any]:
-    return {
-        "label": curve.name,
-        "component": curve.letter,
-        "colour": curve.style["color"],
-        "dash": curve.style["linestyle"],
-        "marker": curve.style["marker"],
-        "y": values.tolist(),
-    }
 
 
 def _hull(path: Path, steps: Sequence[Step]) -> FloatArray:

@@ -8,7 +8,7 @@ const channels = (name, opacity) => {
 };
 
 const state = { step: header.steps.length - 1, quantity: null, component: 0 };
-let scene = null, body = null, camera = null, curves = null, playing = null, due = false;
+let scene = null, body = null, camera = null, curves = null, probes = null, pointer = null, playing = null, due = false;
 
 // ---- the shape
 
@@ -33,6 +33,8 @@ function startShape() {
     scene.addSolid(stored(array, Float32Array), pose);
   }
   camera = new Camera(canvas, header.hull, header.view, redraw);
+  probes = new Probes(at("probes"), header.probes);
+  pointer = new Pointer(canvas, at("hint"));
   new ResizeObserver(() => {
     canvas.width = Math.round(canvas.clientWidth * devicePixelRatio);
     canvas.height = Math.round(canvas.clientHeight * devicePixelRatio);
@@ -42,7 +44,7 @@ function startShape() {
 
 function showShape() {
   if (!scene) return;
-  const moved = body.moved(quantities.get("displacement").columns(state.step));
+  const moved = scene.moved = body.moved(quantities.get("displacement").columns(state.step));
   const nodal = body.thick
     ? body.drawn(moved, quantities.get("director").columns(state.step), quantities.get("phi").column(state.step, 0))
     : moved;
@@ -87,6 +89,7 @@ function showBar(map) {
     const first = 3 * Math.round((i / 16) * (map.length / 3 - 1));
     return `rgb(${map[first]} ${map[first + 1]} ${map[first + 2]})`;
   });
+  state.stops = stops;
   at("scale").style.background = `linear-gradient(to top, ${stops})`;
   const [low, high] = range.map((value) => value * quantity.factor);
   at("ticks").replaceChildren(...ticks(low, high, 6).map(([value, text]) => {
@@ -97,6 +100,19 @@ function showBar(map) {
   }));
 }
 
+function drawScene() {
+  scene.draw(camera, state.range, at("arrows").checked && channels("--magnet", 1));
+}
+
+// Boxes of what lies over the canvas, which names of probes keep clear of.
+function covered() {
+  const stage = at("stage").getBoundingClientRect();
+  return ["bar", "ticks", "quantity", "compass", "views"].map((id) => {
+    const { left, top, right, bottom } = at(id).getBoundingClientRect();
+    return [left - stage.left, top - stage.top, right - stage.left, bottom - stage.top];
+  });
+}
+
 function redraw() {
   if (due || !scene) return;
   due = true;
@@ -104,8 +120,10 @@ function redraw() {
     due = false;
     const { canvas } = scene.gl;
     if (!state.range || !canvas.width || !canvas.height) return;
-    scene.draw(camera, state.range, at("arrows").checked && channels("--magnet", 1));
+    drawScene();
     showCompass();
+    probes.draw(camera, scene.moved, at("marks").checked, covered());
+    pointer.show();
     if (!performance.getEntriesByName("drawn").length) requestAnimationFrame(() => performance.mark("drawn"));
   });
 }
@@ -141,9 +159,11 @@ function go(step) {
   const about = header.steps[state.step];
   at("slider").value = state.step;
   at("step").textContent = `step ${about.number} of ${header.steps.at(-1).number}`;
-  at("field").textContent = header.strongest > 0 ? `|B| = ${figures(about.magnitude * 1e3)} mT` : "no field";
+  at("field").textContent = header.strongest > 0 ? `|B| = ${figures(about.magnitude * 1e3)} mT${header.where}` : "no field";
   const stage = header.stages > 1 ? `stage ${about.stage}, ` : "";
-  at("load").textContent = `${stage}load factor ${figures(about.load_factor)}`;
+  const turned = header.over.find(({ name }) => name.endsWith(".angle"));
+  const angle = turned ? `, ${turned.label.replace(" (°)", "")} ${figures(turned.x[about.number])}°` : "";
+  at("load").textContent = `${stage}load factor ${figures(about.load_factor)}${angle}`;
   at("unstable").hidden = !about.unstable;
   curves?.mark(state.step);
   showShape();
@@ -180,12 +200,9 @@ function fillMenu() {
   menu.value = header.colour;
 }
 
-// Displacements, and the other series of the history.
-const groups = [header.curves, ...header.series];
-
 function fillCurves() {
-  groups.forEach(({ name }, i) => at("curve").append(new Option(name, i)));
-  at("which").hidden = groups.length < 2;
+  header.curves.forEach(({ name }, i) => at("curve").append(new Option(name, i)));
+  header.over.forEach(({ label }, i) => at("over").append(new Option(label, i)));
 }
 
 function choose() {
@@ -198,7 +215,13 @@ function listen() {
   at("colour").addEventListener("change", () => { choose(); showColours(); });
   at("range").addEventListener("change", showColours);
   at("stl").addEventListener("click", () => saveSolid(state.step));
-  at("curve").addEventListener("change", () => curves.show(Number(at("curve").value)));
+  at("picture").addEventListener("click", savePicture);
+  at("curves-picture").addEventListener("click", saveCurves);
+  at("table").addEventListener("click", saveTable);
+  for (const id of ["curve", "over"]) {
+    at(id).addEventListener("change", () => curves.show(Number(at("curve").value), Number(at("over").value)));
+  }
+  at("marks").addEventListener("change", redraw);
   for (const id of ["edges", "arrows", "undeformed"]) at(id).addEventListener("change", showShape);
   at("slider").addEventListener("input", () => { play(false); go(Number(at("slider").value)); });
   at("play").addEventListener("click", () => play(!playing));
@@ -210,12 +233,19 @@ function listen() {
   const keys = {
     ArrowRight: () => go(state.step + 1), ArrowLeft: () => go(state.step - 1), Home: () => go(0), End: () => go(last),
     " ": () => play(!playing), r: () => camera?.look(...header.view),
+    "+": () => camera?.nearer(1 / 1.25), "-": () => camera?.nearer(1.25),
   };
+  const turns = { ArrowRight: [10, 0], ArrowLeft: [-10, 0], ArrowUp: [0, 10], ArrowDown: [0, -10] };
   document.addEventListener("keydown", (event) => {
+    if (event.shiftKey && turns[event.key] && !event.ctrlKey && !event.altKey && !event.metaKey) {
+      event.preventDefault();
+      camera?.turn(...turns[event.key]);
+      return;
+    }
     if (!keys[event.key] || event.ctrlKey || event.altKey || event.metaKey) return;
     if (event.target.closest("select") || (event.key === " " && event.target.closest("button, input"))) return;
     event.preventDefault();
-    if (event.key !== " ") play(false);
+    if (event.key.startsWith("Arrow") || event.key === "Home" || event.key === "End") play(false);
     keys[event.key]();
   });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
@@ -223,6 +253,7 @@ function listen() {
 
 at("slider").max = header.steps.length - 1;
 at("edges").checked = header.edges;
+at("marks").parentElement.hidden = !header.probes.length;
 fillMenu();
 fillCurves();
 choose();
@@ -232,6 +263,6 @@ try {
   scene = null;
   at("message").textContent = `This browser cannot draw the shape: ${error.message}.`;
 }
-curves = new Curves(at("plot"), at("legend"), groups, header.steps, (step) => { play(false); go(step); });
+curves = new Curves(at("plot"), at("legend"), header.curves, header.over, header.steps, (step) => { play(false); go(step); });
 listen();
 go(state.step);

@@ -21,7 +21,10 @@ from magshell.output.page.steps import shown_steps
 if TYPE_CHECKING:
     from magshell.solver.path import Path
 
-SCRIPTS = ("data.js", "body.js", "camera.js", "scene.js", "curves.js", "solid.js", "page.js")
+SCRIPTS = (
+    "data.js", "files.js", "body.js", "camera.js", "scene.js", "curves.js", "probes.js", "pointer.js", "solid.js",
+    "page.js",
+)  # fmt: skip
 TITLE = "Deformed shell"
 
 

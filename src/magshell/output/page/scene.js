@@ -173,9 +173,10 @@ class Scene {
     const part = (first) => Float32Array.from({ length: data.length / 2 }, (_, i) => {
       return data[6 * Math.floor(i / 3) + first + (i % 3)];
     });
-    this.fill(solid, "position", part(0));
+    const corners = part(0);
+    this.fill(solid, "position", corners);
     this.fill(solid, "normal", part(3));
-    this.solids.push({ ...solid, pose, count: data.length / 6 });
+    this.solids.push({ ...solid, pose, corners, count: data.length / 6 });
   }
 
   setInstances(drawable, name, data) {
@@ -207,7 +208,7 @@ class Scene {
       for (const lines of this.lines) {
         const { width, ink, nearer, shown, behind } = lines.style();
         if (!shown || Boolean(behind) !== wanted) continue;
-        begin(lines, { width: [width * devicePixelRatio], ink, nearer: [nearer] });
+        begin(lines, { width: [(width * canvas.width) / canvas.clientWidth], ink, nearer: [nearer] });
         gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, lines.instances);
       }
     };

@@ -64,9 +64,5 @@ function solidFile(step) {
 }
 
 function saveSolid(step) {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([solidFile(step)], { type: "model/stl" }));
-  link.download = `${document.title}, step ${header.steps[step].number}.stl`;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+  save(solidFile(step), "model/stl", `${document.title}, step ${header.steps[step].number}.stl`);
 }

@@ -1,0 +1,89 @@
+"""Rotations in a picture of the problem: of groups that are turned, of held sections, and of the field."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from magshell.arrays import FloatArray
+from magshell.magnetics.fields import UniformField
+from magshell.mesh.geometry import unit
+from magshell.model.support import frame_about
+from magshell.output.marks import SUPPORTS, Mark, Solids
+from magshell.output.style import ACCENT
+
+if TYPE_CHECKING:
+    from magshell.model.model import Model
+
+RADIUS = 0.11
+"""Of an arc, over the size of the part."""
+
+
+def turn_marks(model: Model, size: float) -> list[Mark]:
+    """An arc about the axis, with the angle, for each support that turns what it holds."""
+    marks = []
+    for number, support in enumerate(model.supports):
+        spins = [one.value * one.direction for one in support.conditions() if one.field == "omega" and one.value]
+        if not spins:
+            continue
+        spin = np.sum(spins, axis=0)
+        angle = float(np.linalg.norm(spin))
+        axis = spin / angle
+        frame = frame_about(axis)
+        mark = _arc("", SUPPORTS[number % len(SUPPORTS)], _centre(model, support.group), axis, frame[1], angle, size)
+        marks.append(mark)
+    return marks
+
+
+def field_turns(model: Model, arrows: Sequence[Mark], size: float) -> list[Mark]:
+    """An arc for each stage that turns a uniform field, about the tail of its arrows."""
+    if not arrows:
+        return []
+    tail = arrows[0].places[0] - 0.5 * arrows[0].vectors[0]
+    return [
+        _arc(f"field turns by {degrees(angle)} in stage {stage + 1}", ACCENT, tail, axis, start, angle, size)
+        for stage, axis, start, angle in _turned(model)
+    ]
+
+
+def _turned(model: Model) -> Iterator[tuple[int, FloatArray, FloatArray, float]]:
+    """Stage, axis, direction at its start and angle of each turn."""
+    for field in getattr(model.field, "fields", [model.field]):
+        if not isinstance(field, UniformField) or field.rotation is None:
+            continue
+        angles = field.ends(len(model.stages))[:, 1]
+        for stage, (before, after) in enumerate(pairwise(angles)):
+            flux = field.turned(before)
+            across = flux - (flux @ field.axis) * field.axis
+            if after != before and np.linalg.norm(across) > 1e-9 * field.magnitude:
+                yield stage, field.axis, unit(across[None])[0], float(after - before)
+
+
+def _arc(
+    name: str, colour: str, centre: FloatArray, axis: FloatArray, start: FloatArray, angle: float, size: float
+) -> Mark:
+    radius = RADIUS * size
+    mark = Mark(name, colour, Solids.TURNS, centre[None], radius * axis[None], start=start, angle=angle)
+    if name:
+        return mark
+    middle = mark.arc[len(mark.arc) // 2]
+    return Mark(
+        name, colour, Solids.TURNS, centre[None], radius * axis[None], start=start, angle=angle,
+        letters=[(degrees(abs(angle)), centre + 1.25 * (middle - centre), (0.0, 0.0))],
+    )  # fmt: skip
+
+
+def _centre(model: Model, group: str) -> FloatArray:
+    mesh = model.shell.mesh
+    for body in model.shell.rigid:
+        if body.name == group:
+            return body.reference_point(mesh)
+    return np.asarray(mesh.points[model.shell.nodes_of(group)].mean(axis=0))
+
+
+def degrees(angle: float) -> str:
+    """An angle for people."""
+    return f"{np.degrees(angle):.4g}°"
