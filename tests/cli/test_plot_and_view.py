@@ -88,6 +88,10 @@ def test_plot_draws_curve_shapes_and_animation(folder, tmp_path, can_draw, capsy
             "'left.R3' is in N and 'left.M2' is in N m; the curves",
         ),
         (["plot", "--curves", "elastic,magnetic"], "'magnetic' is empty for this problem"),
+        (
+            ["plot", "--over", "load-factor"],
+            "There is no 'load-factor' to draw curves over. Did you mean 'load_factor'?",
+        ),
         (["export", "--out", "body.obj"], "name it body.stl"),
         (["export", "--out", "body.stl", "--step", "11"], "the path has steps 0 to 10"),
         (["export", "--out", "body.stl", "--step", "last"], "is not a number of a step"),
@@ -121,11 +125,12 @@ def test_plot_draws_the_curves_that_are_named(folder, monkeypatch, capsys):
     drawn = []
     monkeypatch.setattr(curve, "deliver", lambda figure, file: drawn.append((figure, file)))
     monkeypatch.setattr("magshell.output.animation.draw_steps", lambda *given: [])
-    assert cli.main(["plot", str(folder), "--curves", "left.M2, left.M1"]) == 0
+    assert cli.main(["plot", str(folder), "--curves", "left.M2, left.M1", "--over", "load_factor"]) == 0
     ((figure, file),) = drawn
     assert file == folder / "curve.png"
     (axes,) = figure.axes[:1]
     assert axes.get_ylabel() == "reaction moment (mN mm)"
+    assert axes.get_xlabel() == "load factor"
     assert axes.lines[0].get_label() == "left  $M_2$"
     moment = results.read(folder).path.table()["left.M2"]
     assert np.abs(axes.lines[0].get_ydata() - 1e6 * moment).max() == 0.0

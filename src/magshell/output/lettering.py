@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from magshell.arrays import AnyArray, FloatArray
+from magshell.output.marks import Mark, Solids
+
+if TYPE_CHECKING:
+    from magshell.output.scene import Camera
 
 BESIDE = 9.0
 """Points from a place to the letters beside it."""
@@ -34,6 +39,54 @@ class Text(NamedTuple):
     size: tuple[float, float]
     towards: tuple[float, float]
     needed: bool
+
+
+def write_letters(axes: Any, marks: list[Mark], camera: Camera) -> list[Mark]:
+    """Write the letters of marks where they cover neither marks nor each other; marks that say if some had no room."""
+    from matplotlib.patheffects import withStroke
+
+    def on_page(points: FloatArray) -> FloatArray:
+        return np.array([axes.transAxes.transform(camera.on_picture(point)) for point in points]).reshape(-1, 2)
+
+    point = axes.figure.dpi / 72.0
+    written, texts = [], []
+    for mark in marks:
+        for text, position, towards in mark.letters:
+            label = axes.text(
+                0.0, 0.0, text, transform=None, ha="center", va="center", color=mark.colour, fontsize=14,
+                path_effects=[withStroke(linewidth=3.0, foreground="white")],
+            )  # fmt: skip
+            box = label.get_window_extent()
+            size = (box.width + 2.0 * point, box.height)
+            written.append((mark, label))
+            texts.append(Text(on_page(position[None])[0], size, towards, mark.solids is not Solids.BALLS))
+    scale = axes.bbox.width / (2.0 * camera.half_width)
+    boxes = [_boxes(on_page(mark.covered), max(0.5 * scale * mark.width, 2.0 * point)) for mark in marks]
+    kept = [box for mark, box in zip(marks, boxes, strict=True) if mark.letters]
+    spared = [box for mark, box in zip(marks, boxes, strict=True) if not mark.letters]
+    none = np.zeros((0, 4))
+    page = np.array(axes.bbox.extents)
+    middles = placed(texts, np.concatenate([none, *kept]), np.concatenate([none, *spared]), page, BESIDE * point)
+    without: dict[int, int] = {}
+    for (mark, label), middle in zip(written, middles, strict=True):
+        if np.isnan(middle).any():
+            label.remove()
+            without[id(mark)] = without.get(id(mark), 0) + 1
+        else:
+            label.set_position(middle)
+    return [_told(mark, without.get(id(mark), 0)) for mark in marks]
+
+
+def _told(mark: Mark, without: int) -> Mark:
+    """With the number of names in the legend if some places have none."""
+    named, count = len(mark.letters) - without, len(mark.places)
+    some = mark.solids is Solids.BALLS and mark.letters and named < count
+    return replace(mark, name=f"{mark.name}, {named} of {count} named") if some else mark
+
+
+def _boxes(points: FloatArray, half: float) -> FloatArray:
+    """Squares (n, 4) about points (n, 2)."""
+    return np.concatenate([points - half, points + half], axis=1)
 
 
 def placed(texts: list[Text], kept: FloatArray, spared: FloatArray, page: FloatArray, beside: float) -> AnyArray:

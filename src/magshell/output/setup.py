@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import os
 import re
-from dataclasses import replace
 from itertools import chain
 from textwrap import fill
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -20,10 +19,9 @@ from magshell.magnetics.remanence import placed as in_the_template
 from magshell.mesh.edges import SIDES
 from magshell.model.words import name_of, thickness_of
 from magshell.output.joints import joints_of
-from magshell.output.lettering import BESIDE, Text, placed
+from magshell.output.lettering import write_letters
 from magshell.output.marks import (
     Mark,
-    Solids,
     body_marks,
     field_marks,
     hinge_marks,
@@ -111,7 +109,7 @@ def draw_setup(
     axes = figure.add_axes(SCENE)
     axes.set_axis_off()
     axes.imshow(scene.picture, aspect="auto", interpolation="none", extent=(0, 1, 0, 1))
-    scene = scene._replace(marks=_letter(axes, scene.marks, scene.camera))
+    scene = scene._replace(marks=write_letters(axes, scene.marks, scene.camera))
     corner = figure.add_axes((SCENE[2], 0.0, 1.0 - SCENE[2], 0.2))
     corner.set_axis_off()
     triad(corner, scene.camera.axes)
@@ -302,54 +300,6 @@ def _place_body(plotter: Any, shell: Shell, shown: FloatArray, camera: Camera, s
     if template:
         flat = Tessellation(mesh.elements).edges(mesh.points, joints_of(shell).outline)
         plotter.add_mesh(polylines(flat), color=PALE, **thick)
-
-
-def _letter(axes: Any, marks: list[Mark], camera: Camera) -> list[Mark]:
-    """Write the letters of marks where they cover neither marks nor each other; marks that say if some had no room."""
-    from matplotlib.patheffects import withStroke
-
-    def on_page(points: FloatArray) -> FloatArray:
-        return np.array([axes.transAxes.transform(camera.on_picture(point)) for point in points]).reshape(-1, 2)
-
-    point = axes.figure.dpi / 72.0
-    written, texts = [], []
-    for mark in marks:
-        for text, position, towards in mark.letters:
-            label = axes.text(
-                0.0, 0.0, text, transform=None, ha="center", va="center", color=mark.colour, fontsize=14,
-                path_effects=[withStroke(linewidth=3.0, foreground="white")],
-            )  # fmt: skip
-            box = label.get_window_extent()
-            size = (box.width + 2.0 * point, box.height)
-            written.append((mark, label))
-            texts.append(Text(on_page(position[None])[0], size, towards, mark.solids is not Solids.BALLS))
-    scale = axes.bbox.width / (2.0 * camera.half_width)
-    boxes = [_boxes(on_page(mark.covered), max(0.5 * scale * mark.width, 2.0 * point)) for mark in marks]
-    kept = [box for mark, box in zip(marks, boxes, strict=True) if mark.letters]
-    spared = [box for mark, box in zip(marks, boxes, strict=True) if not mark.letters]
-    none = np.zeros((0, 4))
-    page = np.array(axes.bbox.extents)
-    middles = placed(texts, np.concatenate([none, *kept]), np.concatenate([none, *spared]), page, BESIDE * point)
-    without: dict[int, int] = {}
-    for (mark, label), middle in zip(written, middles, strict=True):
-        if np.isnan(middle).any():
-            label.remove()
-            without[id(mark)] = without.get(id(mark), 0) + 1
-        else:
-            label.set_position(middle)
-    return [_told(mark, without.get(id(mark), 0)) for mark in marks]
-
-
-def _told(mark: Mark, without: int) -> Mark:
-    """With the number of names in the legend if some places have none."""
-    named, count = len(mark.letters) - without, len(mark.places)
-    some = mark.solids is Solids.BALLS and mark.letters and named < count
-    return replace(mark, name=f"{mark.name}, {named} of {count} named") if some else mark
-
-
-def _boxes(points: FloatArray, half: float) -> FloatArray:
-    """Squares (n, 4) about points (n, 2)."""
-    return np.concatenate([points - half, points + half], axis=1)
 
 
 def _scale_bar(figure: Any, camera: Camera) -> None:
