@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import argparse
 import contextlib
+import importlib
 import io
 import pathlib
 import re
@@ -16,10 +18,13 @@ from problem_files import STRIP
 import magshell as ms
 from magshell import cli
 from magshell.output import rendering
+from magshell.problem.reading import check, parse
 
 DOCS = pathlib.Path(__file__).parents[2] / "docs"
 FOLDER = DOCS / "recipes"
 PAGES = sorted(page.stem for page in FOLDER.glob("*.md") if page.stem != "README")
+LONG = ("stl", "strain")
+"""Pages that mesh or draw for more than 5 s: they run in `make verify`."""
 DRAWN = ("show", "plot")
 """Commands that need a machine that can draw in three dimensions."""
 
@@ -75,7 +80,9 @@ def can_draw() -> bool:
     return True
 
 
-@pytest.mark.parametrize("page", PAGES)
+@pytest.mark.parametrize(
+    "page", [pytest.param(page, marks=pytest.mark.verify) if page in LONG else page for page in PAGES]
+)
 def test_a_page_runs_and_prints_what_it_says(page: str, tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
     shutil.copy(DOCS / "meshes" / "plate.stl", tmp_path)
@@ -94,6 +101,22 @@ def test_a_page_runs_and_prints_what_it_says(page: str, tmp_path, monkeypatch) -
             assert block.language in ("python", "sh"), block.language
             printed = run(block, names, can_draw())
         before = block.language
+
+
+@pytest.mark.parametrize("page", LONG)
+def test_files_commands_and_programs_of_long_pages_are_sound(page: str) -> None:
+    """The small twin: problem files are checked, commands have their options, programs compile."""
+    for block in blocks_of(page):
+        if block.language == "toml":
+            check(parse(with_table(block.text), page), page)
+        elif block.language == "python":
+            compile(block.text, page, "exec")
+        for words in commands_of(block) if block.language == "sh" else []:
+            assert words[0] in cli.COMMANDS
+            known = importlib.import_module(f"magshell.cli.{words[0]}")
+            parser = argparse.ArgumentParser()
+            known.add_arguments(parser)
+            parser.parse_args(words[1:])
 
 
 def test_every_page_is_in_the_list_and_no_longer_than_a_screen() -> None:
