@@ -14,7 +14,6 @@ from magshell.equations.local_field import FieldAtLevels
 from magshell.equations.numbering import Numbering
 from magshell.equations.scatter import Destination, Elements, add_matrices, turn_matrices
 from magshell.equations.term import Contribution, InvertedElement
-from magshell.magnetics.fields import Field
 from magshell.model.constraints import Constraints
 from magshell.model.course import Loading
 from magshell.model.model import NO_FIELD
@@ -43,13 +42,15 @@ class ShellTerm:
         Of the mesh.
     stiffest : ndarray, shape (elements, levels)
         Largest modulus of the material, Pa.
-    field : Field, optional
+    field : FieldAtLevels, optional
         By default none.
     """
 
-    def __init__(self, reference: Reference, nodes: int, stiffest: FloatArray, field: Field = NO_FIELD) -> None:
+    def __init__(
+        self, reference: Reference, nodes: int, stiffest: FloatArray, field: FieldAtLevels | None = None
+    ) -> None:
         self.body, self._nodes = reference.body, nodes
-        self.field = FieldAtLevels(field, reference)
+        self.field = FieldAtLevels(NO_FIELD, reference) if field is None else field
         layout, count = self.body.layout, len(self.body.elements)
         carrying = [layout.u] * 3 + [layout.w] * 3 + [layout.phi] + [layout.q] * 3 + [layout.s]
         node = np.concatenate([np.arange(number) for number in carrying])

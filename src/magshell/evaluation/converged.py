@@ -12,7 +12,6 @@ from magshell.equations.discretisation import Assembly, Discretisation
 from magshell.equations.instant import Instant
 from magshell.evaluation.balance import Balance, magnetic
 from magshell.evaluation.patches import patches_of
-from magshell.evaluation.points import PointFields, evaluate, level_stretch, of_couplings
 from magshell.evaluation.points import magnetic_torque as torque_of_points
 from magshell.evaluation.reactions import Reaction, held_forces, reactions
 from magshell.evaluation.resultants import Resultants
@@ -23,6 +22,7 @@ from magshell.magnetics.fields.field import known
 from magshell.magnetics.law import X
 from magshell.model.course import Loading
 from magshell.shell import rotation
+from magshell.shell.deformed import PointFields, evaluate, level_stretch, of_couplings
 from magshell.shell.point import INTERNAL
 from magshell.shell.section import LocalField
 from magshell.shell.state import State

@@ -26,6 +26,8 @@ from magshell.solver.settings import Settings
 HALVINGS = 4
 # Residual below which an iteration that no longer converges has met round-off (very thin shells on graded meshes).
 ROUND_OFF = 1e-5
+# So many times the iterations are allowed where a part of the tangent is left out and they converge linearly.
+PATIENCE = 3
 # An increment of so many body lengths or radians says that the tangent is singular to round-off.
 ABSURD = 1e8
 
@@ -81,6 +83,11 @@ class System(NamedTuple):
     course: Course
     settings: Settings
 
+    @property
+    def patience(self) -> int:
+        """By how much more iterations a step may take, and is expected to, than the settings say."""
+        return 1 if self.discretisation.exact_tangent else PATIENCE
+
     def instant(self, trial: Trial) -> Instant:
         """What the equations are evaluated at."""
         prediction = trial.prediction if self.settings.mixed_tangent else None
@@ -115,6 +122,7 @@ def newton(
         No convergence, an inverted element, a singular tangent.
     """
     discretisation, settings = system.discretisation, system.settings
+    most = system.patience * settings.max_iterations
     residuals: list[float] = []
     increment: Increment | None = None
     factors: Factorisation | None = None
@@ -128,12 +136,10 @@ def newton(
         report(len(residuals) - 1, kind, residual)
         if not np.isfinite(residual):
             raise StepFailure(f"the residual is not finite{beyond(discretisation, trial.state)}")
-        if residual <= settings.tolerance or _stalled(residuals):
+        if residual <= settings.tolerance or _stalled(residuals, 0.1 if discretisation.exact_tangent else 1.0):
             return Solution(trial, assembly, residuals, increment, factors)
-        if len(residuals) > settings.max_iterations:
-            raise StepFailure(
-                f"no convergence in {settings.max_iterations} iterations (residual of {kind}: {residual:.1e})"
-            )
+        if len(residuals) > most:
+            raise StepFailure(f"no convergence in {most} iterations (residual of {kind}: {residual:.1e})")
         if len(residuals) > 6 and residual > 1e3 * min(residuals):
             raise StepFailure(f"the iteration diverges (residual of {kind}: {residual:.1e})")
         factors = None  # two sets of factors at a time would be twice the memory
@@ -166,9 +172,9 @@ def newton(
                     raise _failed(failure) from None
 
 
-def _stalled(residuals: list[float]) -> bool:
-    """Whether round-off has stopped the iteration, which converges quadratically until there."""
-    return len(residuals) > 2 and max(residuals[-3:]) < ROUND_OFF and residuals[-1] > 0.1 * residuals[-3]
+def _stalled(residuals: list[float], slowest: float) -> bool:
+    """Whether round-off has stopped an iteration that reduces the residual at least by a factor in two steps."""
+    return len(residuals) > 2 and max(residuals[-3:]) < ROUND_OFF and residuals[-1] > slowest * residuals[-3]
 
 
 def factorise(system: System, assembly: Assembly) -> Factorisation:
