@@ -15,7 +15,7 @@ from magshell.arrays import FloatArray
 from magshell.equations.instant import Instant
 from magshell.equations.loads import NodalTerm
 from magshell.equations.magnets import Magnets
-from magshell.equations.own_field import OwnField
+from magshell.equations.own_field import Own, OwnField
 from magshell.magnetics.fields import Field, Values
 from magshell.magnetics.fields.own import own_multiplier
 from magshell.model.constraints import Constraints
@@ -107,6 +107,10 @@ class DipoleTerm(NodalTerm):
         values = self._field.rate(instant.loading.drives, rate.drives, self._magnets.positions(instant.state))
         multiplier = own_multiplier(self._field, rate.drives)
         return self._of(instant.state, self._with_own(values, instant.state, multiplier))
+
+    def of_own_field(self, state: State, own: Own, multiplier: float) -> FloatArray:
+        """Share (rows, 11) of the residual that is due to a multiple of the body's own field, global axes."""
+        return -self._of(state, Values(multiplier * own.at_magnets, multiplier * own.slopes_at_magnets, None))
 
     def energy(self, state: State, loading: Loading) -> float:
         """-Σ R m · (B + ½ B_own), J."""

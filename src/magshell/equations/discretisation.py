@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import reduce
 from typing import NamedTuple
 
@@ -23,7 +23,7 @@ from magshell.equations.own_field import OwnField
 from magshell.equations.shell import ShellTerm
 from magshell.equations.springs import SpringTerm
 from magshell.equations.term import Term, squares_by_kind
-from magshell.magnetics.fields.own import has_own
+from magshell.magnetics.fields.own import has_own, own_multiplier
 from magshell.model.course import Loading
 from magshell.model.hinge_springs import hinge_springs
 from magshell.model.model import Model
@@ -33,6 +33,8 @@ from magshell.shell.state import State
 from magshell.shell.unknowns import COLUMNS, COMPONENTS, UNKNOWNS
 
 KINDS = (*COLUMNS, "alpha")
+# Largest change of an unknown, in its unit, over which the body's own field is differentiated.
+DIFFERENCE = 1e-6
 
 
 class Assembly(NamedTuple):
@@ -134,8 +136,45 @@ class Discretisation:
 
     @property
     def exact_tangent(self) -> bool:
-        """Whether the tangent is the derivative of the residual; that of the body's own field is left out."""
+        """Whether the tangent is the derivative of the residual; `left_out` is what is missing."""
         return self.shell.field.own is None
+
+    def left_out(self, instant: Instant) -> Callable[[Increment], FloatArray]:
+        """Product (dofs,) with increments of the derivative that the tangent has not: of what the own field does.
+
+        By a difference over a small part of the increment.
+        """
+        here = self._of_own_field(instant.state, instant.loading)
+
+        def product(increment: Increment) -> FloatArray:
+            largest = self.largest(increment)[0]
+            if not here.any() or not largest:
+                return np.zeros(self.dofs)
+            size = DIFFERENCE / largest
+            moved = self.moved(instant.state, size * increment)
+            return (self._of_own_field(moved, instant.loading) - here) / size
+
+        return product
+
+    def _of_own_field(self, state: State, loading: Loading) -> FloatArray:
+        """Share (dofs,) of the residual that is due to the body's own field."""
+        field, found = self.shell.field.own, np.zeros(self.dofs)
+        multiplier = own_multiplier(self.model.field, loading.drives)
+        if field is not None and multiplier:
+            own = field.at(state)
+            residual = self.shell.of_own_field(state, loading, own, multiplier)
+            if self.dipoles.present:
+                residual += self.to_frames(self.dipoles.of_own_field(state, own, multiplier))
+            found[self.numbering.equations] = self.rows.folded(residual)[self.free]
+        return found
+
+    @property
+    def units(self) -> FloatArray:
+        """Of the unknowns (dofs,): body lengths, directors, thickness ratios and radians."""
+        units, found = np.empty(self.free.shape), np.empty(self.dofs)
+        units[:] = [self._unit(column) for column in range(COMPONENTS)]
+        found[self.numbering.equations] = units[self.free]
+        return found
 
     @property
     def normals(self) -> FloatArray:

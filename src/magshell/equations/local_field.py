@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.equations.own_field import OwnField
+from magshell.equations.own_field import Own, OwnField
 from magshell.equations.term import FieldLost
 from magshell.magnetics.fields import Field, FieldUnknown, MagnetField, Values
 from magshell.magnetics.fields.own import own_multiplier
@@ -68,17 +68,10 @@ class FieldAtLevels:
         return self._with_own(shaped(values, points.shape[:3]), state, own_multiplier(self.field, rate.drives))
 
     def _with_own(self, field: LocalField, state: State, multiplier: float) -> LocalField:
-        """A field with a multiple of the body's own, which also stands behind the derivatives."""
+        """A field with a multiple of the body's own."""
         if self.own is None:
             return field
-        assert field.slopes is not None
-        own = np.zeros((*field.flux_density.shape[:3], 12))
-        if multiplier:
-            one = self.own.at(state)
-            own = multiplier * np.concatenate([one.flux_density, one.gradient], axis=-1)
-        slopes = np.concatenate([field.slopes, own], axis=-1)
-        slopes[..., :9] += own[..., 3:]
-        return LocalField(field.flux_density + own[..., :3], slopes)
+        return with_own(field, self.own.at(state) if multiplier else None, multiplier)
 
     def _uniform(self, flux_density: FloatArray) -> LocalField:
         shape = self._reference.body.levels.shape
@@ -100,6 +93,17 @@ class FieldAtLevels:
             return None
         away = np.linalg.norm(points - unknown.position, axis=-1)
         return int(np.argmin(np.nan_to_num(away, nan=np.inf).reshape(len(away), -1).min(axis=1)))
+
+
+def with_own(field: LocalField, own: Own | None, multiplier: float) -> LocalField:
+    """A field that varies with a multiple of the body's own, if there is any, which also stands behind its slopes."""
+    assert field.slopes is not None
+    share = np.zeros((*field.flux_density.shape[:3], 12))
+    if own is not None:
+        share = multiplier * np.concatenate([own.flux_density, own.gradient], axis=-1)
+    slopes = np.concatenate([field.slopes, share], axis=-1)
+    slopes[..., :9] += share[..., 3:]
+    return LocalField(field.flux_density + share[..., :3], slopes)
 
 
 def shaped(values: Values, shape: tuple[int, ...]) -> LocalField:

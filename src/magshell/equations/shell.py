@@ -10,10 +10,12 @@ from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.equations.frames import to_frames, to_global
 from magshell.equations.insertion import Insertion, destination, summed
 from magshell.equations.instant import STATIC, Increment, Instant, Prediction, Weights
-from magshell.equations.local_field import FieldAtLevels
+from magshell.equations.local_field import FieldAtLevels, with_own
 from magshell.equations.numbering import Numbering
+from magshell.equations.own_field import Own
 from magshell.equations.scatter import Destination, Elements, add_matrices, turn_matrices
 from magshell.equations.term import Contribution, InvertedElement
+from magshell.magnetics.law import GRADIENTS
 from magshell.model.constraints import Constraints
 from magshell.model.course import Loading
 from magshell.model.model import NO_FIELD
@@ -22,6 +24,7 @@ from magshell.shell.body import Reference
 from magshell.shell.element import padded
 from magshell.shell.geometry import unit_forces
 from magshell.shell.section import LocalField, Request
+from magshell.shell.state import State
 from magshell.shell.unknowns import COLUMNS, COMPONENTS
 
 ROUND_OFF = 8.0 * np.finfo(float).eps
@@ -143,9 +146,9 @@ class ShellTerm:
         """See `Term`. Residuals are linear in the field, unless levels have stretches that follow it."""
         if not np.any(rate.drives):
             return np.zeros((self._nodes, COMPONENTS))
+        along = self.field.rate(instant.state, instant.loading, rate)
         still, change = Instant(instant.state, instant.loading), np.zeros((self._nodes, COMPONENTS))
         now = self.field.at(instant.state, instant.loading, second=False)
-        along = self.field.rate(instant.state, instant.loading, rate)
         for step, weight in FORWARD if self.body.by_level is None else CENTRAL:
             there = LocalField(
                 now.flux_density + step * along.flux_density,
@@ -153,6 +156,14 @@ class ShellTerm:
             )
             change += weight * self._evaluate(still, there, STATIC, None, None).residual
         return change
+
+    def of_own_field(self, state: State, loading: Loading, own: Own, multiplier: float) -> FloatArray:
+        """Share (nodes, 11) of the residual that is due to a multiple of the body's own field."""
+        shape, still = self.body.levels.shape, Instant(state, loading)
+        nothing = LocalField(np.zeros((*shape, 3)), np.zeros((*shape, GRADIENTS)))
+        fields = with_own(nothing, own, multiplier), nothing
+        whole, rest = (self._evaluate(still, field, STATIC, None, None).residual for field in fields)
+        return whole - rest
 
     def predict(self, instant: Instant, increment: Increment) -> Prediction:
         """See `Term`."""

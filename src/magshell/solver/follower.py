@@ -47,8 +47,7 @@ class Follower:
         self.metric = Metric(1.0 / (len(mesh.points) * mesh.size**2))
         self.stage, self.track = 0, list[Point]()
         self.goal, self.taken, self.by_arc = 0, 0, False
-        target = self.system.patience * self.settings.target_iterations
-        self.control = StepControl(StepRules(target, self.settings.smallest_step), 0.0)
+        self.control = StepControl(StepRules(self.settings.target_iterations, self.settings.smallest_step), 0.0)
         self.failure = StepFailure("")
         self.begin, self.cpu = time.perf_counter(), time.process_time() - path.cpu_seconds
 

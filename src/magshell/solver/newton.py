@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from magshell.arrays import FloatArray
 from magshell.equations.discretisation import Assembly, Discretisation
 from magshell.equations.instant import Increment, Instant, Prediction
 from magshell.equations.term import FieldLost, InvertedElement
@@ -26,10 +27,10 @@ from magshell.solver.settings import Settings
 HALVINGS = 4
 # Residual below which an iteration that no longer converges has met round-off (very thin shells on graded meshes).
 ROUND_OFF = 1e-5
-# So many times the iterations are allowed where a part of the tangent is left out and they converge linearly.
-PATIENCE = 3
 # An increment of so many body lengths or radians says that the tangent is singular to round-off.
 ABSURD = 1e8
+# Of GMRES: the residual that it leaves, and its largest number of vectors.
+FORCING, MOST_VECTORS = 1e-5, 60
 
 
 class StepFailure(ArithmeticError):
@@ -83,11 +84,6 @@ class System(NamedTuple):
     course: Course
     settings: Settings
 
-    @property
-    def patience(self) -> int:
-        """By how much more iterations a step may take, and is expected to, than the settings say."""
-        return 1 if self.discretisation.exact_tangent else PATIENCE
-
     def instant(self, trial: Trial) -> Instant:
         """What the equations are evaluated at."""
         prediction = trial.prediction if self.settings.mixed_tangent else None
@@ -105,7 +101,37 @@ class System(NamedTuple):
         """Increment per load factor, by the factors of a tangent."""
         discretisation, rate = self.discretisation, self.course.rate(trial.load_factor)
         direction = discretisation.load_direction(self.instant(trial), rate, assembly)
-        return discretisation.direction(factors.solve(direction), discretisation.imposed(rate.held))
+        solution = self.solved(trial, factors, direction)
+        return discretisation.direction(solution, discretisation.imposed(rate.held))
+
+    def solved(self, trial: Trial, factors: Factorisation, right_side: FloatArray) -> FloatArray:
+        """Solution (dofs,) of the derivative of the residual, with the factors of the tangent.
+
+        Where that leaves something out, by GMRES with these factors as preconditioner.
+
+        Raises
+        ------
+        StepFailure
+            The body's own field is not known beside the trial.
+        """
+        discretisation = self.discretisation
+        first = factors.solve(right_side)
+        if discretisation.exact_tangent or not np.isfinite(first).all():
+            return first
+        from scipy.sparse.linalg import LinearOperator, gmres
+
+        units, left_out = discretisation.units, discretisation.left_out(self.instant(trial))
+
+        def product(scaled: FloatArray) -> FloatArray:
+            change = left_out(discretisation.direction(units * scaled))
+            return scaled + factors.solve(change) / units
+
+        operator = LinearOperator((discretisation.dofs, discretisation.dofs), product, dtype=float)
+        try:
+            found, _ = gmres(operator, first / units, rtol=FORCING, restart=MOST_VECTORS, maxiter=1)
+            return np.asarray(units * found)
+        except (InvertedElement, FieldLost) as failure:
+            raise _failed(failure) from None
 
 
 def newton(
@@ -122,7 +148,6 @@ def newton(
         No convergence, an inverted element, a singular tangent.
     """
     discretisation, settings = system.discretisation, system.settings
-    most = system.patience * settings.max_iterations
     residuals: list[float] = []
     increment: Increment | None = None
     factors: Factorisation | None = None
@@ -136,15 +161,17 @@ def newton(
         report(len(residuals) - 1, kind, residual)
         if not np.isfinite(residual):
             raise StepFailure(f"the residual is not finite{beyond(discretisation, trial.state)}")
-        if residual <= settings.tolerance or _stalled(residuals, 0.1 if discretisation.exact_tangent else 1.0):
+        if residual <= settings.tolerance or _stalled(residuals):
             return Solution(trial, assembly, residuals, increment, factors)
-        if len(residuals) > most:
-            raise StepFailure(f"no convergence in {most} iterations (residual of {kind}: {residual:.1e})")
+        if len(residuals) > settings.max_iterations:
+            raise StepFailure(
+                f"no convergence in {settings.max_iterations} iterations (residual of {kind}: {residual:.1e})"
+            )
         if len(residuals) > 6 and residual > 1e3 * min(residuals):
             raise StepFailure(f"the iteration diverges (residual of {kind}: {residual:.1e})")
         factors = None  # two sets of factors at a time would be twice the memory
         factors = factorise(system, assembly)
-        increment = discretisation.correction(factors.solve(assembly.right_side))
+        increment = discretisation.correction(system.solved(trial, factors, assembly.right_side))
         d_load = 0.0
         if constraint is not None:
             per_load = system.per_load(trial, assembly, factors)
@@ -172,9 +199,9 @@ def newton(
                     raise _failed(failure) from None
 
 
-def _stalled(residuals: list[float], slowest: float) -> bool:
-    """Whether round-off has stopped an iteration that reduces the residual at least by a factor in two steps."""
-    return len(residuals) > 2 and max(residuals[-3:]) < ROUND_OFF and residuals[-1] > slowest * residuals[-3]
+def _stalled(residuals: list[float]) -> bool:
+    """Whether round-off has stopped the iteration, which converges quadratically until there."""
+    return len(residuals) > 2 and max(residuals[-3:]) < ROUND_OFF and residuals[-1] > 0.1 * residuals[-3]
 
 
 def factorise(system: System, assembly: Assembly) -> Factorisation:
