@@ -32,47 +32,49 @@ class Samples(NamedTuple):
 
 
 def samples(element: ElementType, coordinates: FloatArray, cells: int) -> Samples:
-    """With two by two dipoles in each of cells × cells parts of quadrilaterals (e, 8, 3), and as many in triangles."""
+    """Of elements (e, 8, 3) in cells × cells parts: two by two dipoles in each, in those of triangles three.
+
+    The dipoles that triangles have less than quadrilaterals have no moment.
+    """
     points, weights = element.integration(coordinates)
     triangles = triangle.collapsed(coordinates)
-    finer, shares = _in_cells(cells)
-    inner = _centroids(2 * cells)
-    L, P = (np.zeros((len(coordinates), len(shares), weights.shape[1])) for _ in range(2))
-    for is_triangle in (False, True):
+    count = 4 * cells**2
+    L, P = (np.zeros((len(coordinates), count, weights.shape[1])) for _ in range(2))
+    for is_triangle in np.unique(triangles):
         some = triangles == is_triangle
-        if not some.any():
-            continue
         own = weights[np.argmax(some)]
         used = np.flatnonzero(own)
         if is_triangle:
-            parent, ω = points.triangles[used], own[used] * (1.0 - points.triangles[used, 1]) / 4.0
-            values = inner @ np.linalg.pinv(triangle.barycentric(parent)[0])
-            portion = np.full(len(inner), 1.0 / len(inner))
+            parent = points.triangles[used]
+            ω = own[used] * (1.0 - parent[:, 1]) / 4.0
+            finer, shares = _in_triangles(cells)
+            values = finer @ np.linalg.pinv(triangle.barycentric(parent)[0])
         else:
             parent, ω = points.quadrilaterals[used], own[used]
+            finer, shares = _in_squares(cells)
             degree = round(np.sqrt(len(used)))
             values = _powers(finer, degree) @ np.linalg.pinv(_powers(parent, degree))
-            portion = shares
-        L[np.ix_(some, np.arange(len(shares)), used)] = values
-        P[np.ix_(some, np.arange(len(shares)), used)] = portion[:, None] * values / ω
+        values, shares = values[np.arange(count) % len(values)], np.append(shares, np.zeros(count - len(shares)))
+        L[np.ix_(some, np.arange(count), used)] = values
+        P[np.ix_(some, np.arange(count), used)] = shares[:, None] * values / ω
     return Samples(L, P)
 
 
-def _in_cells(cells: int) -> tuple[FloatArray, FloatArray]:
-    """Gauss points, two by two in each cell, and their weights."""
+def _in_squares(cells: int) -> tuple[FloatArray, FloatArray]:
+    """Gauss points, two by two in each cell of the parent square, and their weights."""
     points, weights = gauss_legendre(2)
     middles = (2.0 * np.arange(cells) + 1.0) / cells - 1.0
     corner = np.stack(np.meshgrid(middles, middles, indexing="ij"), axis=-1).reshape(-1, 1, 2)
     return (corner + points / cells).reshape(-1, 2), np.tile(weights / cells**2, cells**2)
 
 
-def _centroids(parts: int) -> FloatArray:
-    """Barycentric coordinates of the middles of a triangle's parts² similar parts."""
-    upright = [(i, j) for i in range(parts) for j in range(parts - i)]
-    inverted = [(i, j) for i in range(parts - 1) for j in range(parts - 1 - i)]
-    first = np.array([(i + 1 / 3, j + 1 / 3) for i, j in upright] + [(i + 2 / 3, j + 2 / 3) for i, j in inverted])
-    first /= parts
-    return np.column_stack([first, 1.0 - first.sum(axis=1)])
+def _in_triangles(cells: int) -> tuple[FloatArray, FloatArray]:
+    """Barycentric coordinates of the three points of degree two in each of a triangle's similar parts, and shares."""
+    upright = [[(i, j), (i + 1, j), (i, j + 1)] for i in range(cells) for j in range(cells - i)]
+    inverted = [[(i + 1, j + 1), (i, j + 1), (i + 1, j)] for i in range(cells - 1) for j in range(cells - 1 - i)]
+    corners = np.array([*upright, *inverted]) / cells
+    first = ((0.5 * np.eye(3) + 1.0 / 6.0) @ corners).reshape(-1, 2)
+    return np.column_stack([first, 1.0 - first.sum(axis=1)]), np.full(len(first), 1.0 / len(first))
 
 
 def _powers(points: FloatArray, count: int) -> FloatArray:
