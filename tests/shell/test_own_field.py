@@ -91,14 +91,14 @@ def test_two_plates_against_magpylib(place, turn, remanence, error, cut):
 
 
 def test_error_falls_with_the_mesh():
-    """At a gap of 1.5 mm, from elements of 5 to 1.25 mm."""
+    """At a gap of 1.5 mm and three levels: elements of 5 mm are too large, those of 2.5 and 1.25 mm are not."""
     plate = {"dimension": (LENGTH, LENGTH, THICKNESS), "polarization": (0, 0, J)}
     target = magpylib.magnet.Cuboid(**plate, position=(0, 0, 2.5e-3))
     force = magpylib.getFT(magpylib.magnet.Cuboid(**plate), target, meshing=20000)[0][2]
-    errors = [abs(exerted(*magnetised((n, n), (0, 0, 2.5e-3)))[1][0][2] / force - 1.0) for n in (2, 4, 8)]
-    assert errors[1] < 0.1 * errors[0]
-    assert errors[2] < 0.3 * errors[1]
-    assert errors[2] < 2e-3
+    found = [exerted(*magnetised((n, n), (0, 0, 2.5e-3), levels=3))[1][0][2] for n in (2, 4, 8)]
+    errors = np.abs(np.array(found) / force - 1.0)
+    assert errors[0] > 0.1
+    assert errors[1:].max() < 1e-3
 
 
 @each_law

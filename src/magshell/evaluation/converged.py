@@ -180,6 +180,10 @@ class Converged:
         """External flux density at the deformed nodes (nodes, 3), T; NaN where the field is not known."""
         return known(self.discretisation.model.field, self.loading.drives, self.mesh.points + self.displacement)
 
+    def self_flux_density(self) -> FloatArray:
+        """What the body's own field adds (elements, 3), T, mean over the element; zero where it does not act."""
+        return self.mean(self.discretisation.shell.field.own_at(self.state, self.loading))
+
     def director(self) -> FloatArray:
         """Director d at the rows of the patches (rows, 3): that of the sheet and the section."""
         return self._of_patches(self.element_directors())
