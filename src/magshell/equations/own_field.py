@@ -29,7 +29,7 @@ from magshell.shell.deformed import evaluate as evaluate_points
 from magshell.shell.deformed import level_stretch, of_couplings
 from magshell.shell.elements import ElementType
 from magshell.shell.positions import level_positions
-from magshell.shell.samples import Samples, samples
+from magshell.shell.samples import samples
 from magshell.shell.section import LocalField
 from magshell.shell.state import State
 
@@ -136,12 +136,19 @@ class OwnField:
             one, other = add_fields(groups, at_few, at_many)
             if one >= 0:
                 raise self._too_near(groups, one, other)
-        count, shape = len(moments), moments.shape
-        summed = _averaged(self._few, at_few[:count], shape[2]) + _averaged(self._many, at_many[:count], shape[2])
+        count = len(moments)
+        summed, forces = np.zeros((*moments.shape[:3], COMPONENTS)), np.zeros_like(moments)
+        sets = ((self._few, at_few, groups.few_moments), (self._many, at_many, groups.many_moments))
+        for finer, field, m in sets:
+            at = field[:count].reshape(count, -1, moments.shape[2], COMPONENTS)
+            summed += np.einsum("eap,eakc->epkc", finer.moments, at)
+            slopes = at[..., 3 + SYMMETRIC].reshape(*at.shape[:3], 3, 3)
+            force = np.einsum("eaki,eakij->eakj", m[:count].reshape(*at.shape[:3], 3), slopes)
+            forces += np.einsum("eap,eakj->epkj", finer.places, force)
         magnets = at_few[count:].mean(axis=1) + at_many[count:].mean(axis=1)
         return Own(
             summed[..., :3].copy(),
-            summed[..., 3 + SYMMETRIC],
+            _exerting(forces, moments, summed[..., 3 + SYMMETRIC]),
             magnets[:, :3].copy(),
             magnets[:, 3 + SYMMETRIC].reshape(-1, 3, 3),
         )
@@ -179,10 +186,17 @@ class OwnField:
         )
 
 
-def _averaged(finer: Samples, field: FloatArray, levels: int) -> FloatArray:
-    """Fields (elements, a levels, 9) of dipoles at the levels (elements, p, k, 9)."""
-    at = field.reshape(len(field), -1, levels, COMPONENTS)
-    return np.asarray(np.einsum("eap,eakc->epkc", finer.moments, at))
+def _exerting(forces: FloatArray, moments: FloatArray, slopes: FloatArray) -> FloatArray:
+    """Slopes (..., 9) with which the moments get given forces; those that they have nearly do that.
+
+    Where the moment varies in an element, the force on its finer dipoles is shared among the levels by the functions
+    that put the dipoles between them: only then it is the derivative of the energy.
+    """
+    gradient = slopes.reshape(*moments.shape, 3)
+    missing = forces - np.einsum("...i,...ij->...j", moments, gradient)
+    square = np.sum(moments**2, axis=-1, keepdims=True)
+    along = np.divide(moments, square, out=np.zeros_like(moments), where=square > 0.0)
+    return np.asarray((gradient + along[..., :, None] * missing[..., None, :]).reshape(slopes.shape))
 
 
 def _magnetisation(coupling: Coupling) -> FloatArray:

@@ -6,10 +6,10 @@ rule. A finer rule with points a and weights ω_a has the dipoles
 
     m_a = Σ_i P_ai m_i,   P_ai = ω_a L_i(a) / ω_i,   at   x_a = Σ_i L_i(a) x_i,
 
-level by level. As the finer rule integrates the L_i, Σ_a P_ai = 1: the whole moment is the same. With the fields of
-the dipoles averaged by the same numbers, B_i = Σ_a P_ai B(x_a) and likewise ∇B_i, torques m_i × B_i and forces
-m_i · ∇B_i at the points add up to those on the dipoles, and so, as long as the moment varies little in the element, do
-their moments. So what two elements exert on each other is opposite and equal.
+level by level. As the finer rule integrates the L_i, Σ_a P_ai = 1: the whole moment is the same. The energy
+-Σ_a m_a · B(x_a) has the derivatives -B_i, with B_i = Σ_a P_ai B(x_a), by m_i, and -f_i, with
+f_i = Σ_a L_i(a) ∇B(x_a)ᵀ m_a, by x_i. Torques m_i × B_i and forces f_i on the points add up to those on the dipoles,
+and so do their moments: what two elements exert on each other is opposite and equal.
 """
 
 from __future__ import annotations
