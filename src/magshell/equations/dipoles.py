@@ -1,8 +1,8 @@
 r"""Magnetic moments of rigid bodies as a term of the equations.
 
 A dipole m turns with the body, R m, at its reference point x. Its energy -R m · B(x) gives the couple R m × B and the
-force f_j = (R m)_i ∂B_i/∂x_j. Of the energy in the body's own field (`own_field.py`) half counts, and that field has no
-part in the tangent, as in the shell.
+force f_j = (R m)_i ∂B_i/∂x_j. Of the energy in the body's own field (`own_field.py`) half counts; the tangent is that
+of a field which stays, as in the shell.
 """
 
 from __future__ import annotations
@@ -66,8 +66,10 @@ class DipoleTerm(NodalTerm):
         if self._own is None or not multiplier:
             return values
         own = self._own.at(state)
-        B, slopes = multiplier * own.at_magnets, multiplier * own.slopes_at_magnets
-        return values.plus(Values(B, slopes, None))
+        return values._replace(
+            flux_density=values.flux_density + multiplier * own.at_magnets,
+            gradient=values.gradient + multiplier * own.slopes_at_magnets,
+        )
 
     def _of(self, state: State, values: Values) -> FloatArray:
         forces, m = np.zeros((len(state.u), COMPONENTS)), self._magnets.turned(state)
@@ -90,7 +92,9 @@ class DipoleTerm(NodalTerm):
         return self.acting(instant.state, instant.loading)
 
     def _blocks(self, instant: Instant) -> Sequence[FloatArray]:
-        values, m = self._values(instant.state, instant.loading), self._magnets.turned(instant.state)
+        multiplier = own_multiplier(self._field, instant.loading.drives)
+        values = self._with_own(self._values(instant.state, instant.loading), instant.state, multiplier)
+        m = self._magnets.turned(instant.state)
         crossed = cross_matrix(m)
         spins = -cross_matrix(np.array(values.flux_density)) @ crossed
         if self._field.is_uniform:
@@ -108,9 +112,10 @@ class DipoleTerm(NodalTerm):
         multiplier = own_multiplier(self._field, rate.drives)
         return self._of(instant.state, self._with_own(values, instant.state, multiplier))
 
-    def of_own_field(self, state: State, own: Own, multiplier: float) -> FloatArray:
-        """Share (rows, 11) of the residual that is due to a multiple of the body's own field, global axes."""
-        return -self._of(state, Values(multiplier * own.at_magnets, multiplier * own.slopes_at_magnets, None))
+    def own_rate(self, instant: Instant, change: Own, multiplier: float) -> FloatArray:
+        """Derivative of the residual (rows, 11) along a multiple of a change of the body's own field, global axes."""
+        values = Values(multiplier * change.at_magnets, multiplier * change.slopes_at_magnets, None)
+        return -self._of(instant.state, values)
 
     def energy(self, state: State, loading: Loading) -> float:
         """-Σ R m · (B + ½ B_own), J."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from functools import reduce
 from typing import NamedTuple
 
@@ -139,34 +139,22 @@ class Discretisation:
         """Whether the tangent is the derivative of the residual; `left_out` is what is missing."""
         return self.shell.field.own is None
 
-    def left_out(self, instant: Instant) -> Callable[[Increment], FloatArray]:
-        """Product (dofs,) with increments of the derivative that the tangent has not: of what the own field does.
+    def left_out(self, instant: Instant, increment: Increment) -> FloatArray:
+        """Product (dofs,) of the derivative that the tangent has not, of the body's own field, with an increment.
 
         By a difference over a small part of the increment.
         """
-        here = self._of_own_field(instant.state, instant.loading)
-
-        def product(increment: Increment) -> FloatArray:
-            largest = self.largest(increment)[0]
-            if not here.any() or not largest:
-                return np.zeros(self.dofs)
-            size = DIFFERENCE / largest
-            moved = self.moved(instant.state, size * increment)
-            return (self._of_own_field(moved, instant.loading) - here) / size
-
+        own, multiplier = self.shell.field.own, own_multiplier(self.model.field, instant.loading.drives)
+        product, largest = np.zeros(self.dofs), self.largest(increment)[0]
+        if own is None or not multiplier or not largest:
+            return product
+        size = DIFFERENCE / largest
+        change = own.change(instant.state, self.moved(instant.state, size * increment), size)
+        residual = self.shell.own_rate(instant, change, multiplier)
+        if self.dipoles.present:
+            residual += self.to_frames(self.dipoles.own_rate(instant, change, multiplier))
+        product[self.numbering.equations] = self.rows.folded(residual)[self.free]
         return product
-
-    def _of_own_field(self, state: State, loading: Loading) -> FloatArray:
-        """Share (dofs,) of the residual that is due to the body's own field."""
-        field, found = self.shell.field.own, np.zeros(self.dofs)
-        multiplier = own_multiplier(self.model.field, loading.drives)
-        if field is not None and multiplier:
-            own = field.at(state)
-            residual = self.shell.of_own_field(state, loading, own, multiplier)
-            if self.dipoles.present:
-                residual += self.to_frames(self.dipoles.of_own_field(state, own, multiplier))
-            found[self.numbering.equations] = self.rows.folded(residual)[self.free]
-        return found
 
     @property
     def units(self) -> FloatArray:

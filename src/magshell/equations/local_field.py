@@ -69,9 +69,14 @@ class FieldAtLevels:
 
     def _with_own(self, field: LocalField, state: State, multiplier: float) -> LocalField:
         """A field with a multiple of the body's own."""
-        if self.own is None:
-            return field
-        return with_own(field, self.own.at(state) if multiplier else None, multiplier)
+        return with_own(field, self.own.at(state) if self.own is not None and multiplier else None, multiplier)
+
+    def half_energy(self, state: State, loading: Loading) -> FloatArray:
+        """Half the energy (elements,) in the body's own field, J, which counts twice in that of the kernels."""
+        multiplier = own_multiplier(self.field, loading.drives)
+        if self.own is None or not multiplier:
+            return np.zeros(len(self._reference.body.elements))
+        return 0.5 * multiplier * self.own.energy(state)
 
     def _uniform(self, flux_density: FloatArray) -> LocalField:
         shape = self._reference.body.levels.shape
@@ -96,14 +101,16 @@ class FieldAtLevels:
 
 
 def with_own(field: LocalField, own: Own | None, multiplier: float) -> LocalField:
-    """A field that varies with a multiple of the body's own, if there is any, which also stands behind its slopes."""
+    """A field that varies with a multiple of the body's own, if there is any.
+
+    Its second derivatives are left out, as is all else that the tangent does not know of how it follows the body.
+    """
+    if own is None:
+        return field
     assert field.slopes is not None
-    share = np.zeros((*field.flux_density.shape[:3], 12))
-    if own is not None:
-        share = multiplier * np.concatenate([own.flux_density, own.gradient], axis=-1)
-    slopes = np.concatenate([field.slopes, share], axis=-1)
-    slopes[..., :9] += share[..., 3:]
-    return LocalField(field.flux_density + share[..., :3], slopes)
+    slopes = field.slopes.copy()
+    slopes[..., :9] += multiplier * own.gradient
+    return LocalField(field.flux_density + multiplier * own.flux_density, slopes)
 
 
 def shaped(values: Values, shape: tuple[int, ...]) -> LocalField:

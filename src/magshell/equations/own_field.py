@@ -23,7 +23,7 @@ from magshell.equations.magnets import Magnets
 from magshell.equations.term import FieldLost
 from magshell.errors import InputError
 from magshell.magnetics.dipole_sums import COMPONENTS, Groups, add_fields
-from magshell.magnetics.law import GRADIENTS, Coupling, X, evaluate
+from magshell.magnetics.law import GRADIENTS, Coupling, X, evaluate, is_conservative
 from magshell.shell.body import Reference
 from magshell.shell.deformed import evaluate as evaluate_points
 from magshell.shell.deformed import level_stretch, of_couplings
@@ -113,6 +113,28 @@ class OwnField:
         if self._last is None or self._last[0] is not state:
             self._last = state, self._summed(state)
         return self._last[1]
+
+    def change(self, state: State, moved: State, size: float) -> Own:
+        """How it differs in a state near by, over a size: ∇B at the levels and magnets that move, B where they were.
+
+        What B changes by as they move, ∇B δx, is part of the tangent.
+        """
+        here, there = self.at(state), self._summed(moved)
+        change = Own(*((new - old) / size for old, new in zip(here, there, strict=True)))
+        levels = (level_positions(self._reference, moved) - level_positions(self._reference, state)) / size
+        magnets = (self._magnets.positions(moved) - self._magnets.positions(state)) / size
+        slopes = here.gradient.reshape(*levels.shape, 3)
+        return change._replace(
+            flux_density=change.flux_density - np.einsum("epkij,epkj->epki", slopes, levels),
+            at_magnets=change.at_magnets - np.einsum("nij,nj->ni", here.slopes_at_magnets, magnets),
+        )
+
+    def energy(self, state: State) -> FloatArray:
+        """-Σ m · B_own (elements,) of the levels whose law has an energy, J: twice the energy of their pairs."""
+        made = self._reference.body.levels["coupling"]
+        counts = np.array([is_conservative(coupling) for coupling in self._couplings])[made]
+        work = np.sum(self.moments(state) * self.at(state).flux_density, axis=-1)
+        return -np.sum(work * counts, axis=(1, 2))
 
     def moments(self, state: State) -> FloatArray:
         """Magnetic moments (elements, p, k, 3) of the levels, A m².

@@ -23,8 +23,8 @@ from magshell.shell import loops
 from magshell.shell.body import Reference
 from magshell.shell.element import padded
 from magshell.shell.geometry import unit_forces
+from magshell.shell.point import MAGNETIC
 from magshell.shell.section import LocalField, Request
-from magshell.shell.state import State
 from magshell.shell.unknowns import COLUMNS, COMPONENTS
 
 ROUND_OFF = 8.0 * np.finfo(float).eps
@@ -88,6 +88,7 @@ class ShellTerm:
     ) -> Contribution:
         """See `Term`."""
         field = self.field.at(instant.state, instant.loading, second=insertion is not None)
+        self._evaluated = instant
         return self._evaluate(instant, field, weights, insertion, imposed)
 
     def _evaluate(
@@ -140,7 +141,9 @@ class ShellTerm:
 
     def evaluated_energy(self) -> FloatArray:
         """The same at the instant that was evaluated last."""
-        return self._filled.energy.copy()
+        energy = self._filled.energy.copy()
+        energy[:, MAGNETIC] -= self.field.half_energy(self._evaluated.state, self._evaluated.loading)
+        return energy
 
     def load_rate(self, instant: Instant, rate: Loading) -> FloatArray:
         """See `Term`. Residuals are linear in the field, unless levels have stretches that follow it."""
@@ -157,11 +160,11 @@ class ShellTerm:
             change += weight * self._evaluate(still, there, STATIC, None, None).residual
         return change
 
-    def of_own_field(self, state: State, loading: Loading, own: Own, multiplier: float) -> FloatArray:
-        """Share (nodes, 11) of the residual that is due to a multiple of the body's own field."""
-        shape, still = self.body.levels.shape, Instant(state, loading)
+    def own_rate(self, instant: Instant, change: Own, multiplier: float) -> FloatArray:
+        """Derivative of the residual (nodes, 11) along a multiple of a change of the body's own field."""
+        shape, still = self.body.levels.shape, Instant(instant.state, instant.loading)
         nothing = LocalField(np.zeros((*shape, 3)), np.zeros((*shape, GRADIENTS)))
-        fields = with_own(nothing, own, multiplier), nothing
+        fields = with_own(nothing, change, multiplier), nothing
         whole, rest = (self._evaluate(still, field, STATIC, None, None).residual for field in fields)
         return whole - rest
 

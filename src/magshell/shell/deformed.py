@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.magnetics.law import GRADIENTS, WORK, Coupling
+from magshell.magnetics.law import WORK, Coupling
 from magshell.magnetics.law import evaluate as evaluate_coupling
 from magshell.shell import loops, rotation
 from magshell.shell.body import Reference
@@ -114,7 +114,7 @@ def of_couplings(
     forces, B = np.empty((*made.shape, WORK)), np.broadcast_to(field.flux_density, m.shape)
     for number, coupling in enumerate(couplings):
         at = made == number
-        slopes = None if field.slopes is None else field.slopes[at][:, :GRADIENTS]
+        slopes = None if field.slopes is None else field.slopes[at]
         forces[at] = evaluate_coupling(coupling, m[at], n[at], B[at], slopes)[1]
     return forces
 

@@ -85,27 +85,14 @@ def carry(w: Record, G: FloatArray, remanence: FloatArray) -> None:
 @inline
 def work(w: Record, laws: Laws, coupling: int, B: FloatArray) -> float:
     """Fill the coupling's forces and tangent; returns its energy per volume. A law that raises an error leaves NaN."""
-    return work_in(w, laws, coupling, B, w.gradients, w.forces, w.work_tangent)
-
-
-@inline
-def work_in(
-    w: Record,
-    laws: Laws,
-    coupling: int,
-    B: FloatArray,
-    gradients: FloatArray,
-    forces: FloatArray,
-    tangent: FloatArray,
-) -> float:
-    """The same in a field with given gradients, with forces (10,) and tangent (9, 9) to fill."""
+    forces, tangent = w.forces, w.work_tangent
     forces[WORK] = np.nan
     for i in range(WORK):
         forces[i] = 0.0
         for j in range(WORK):
             tangent[i, j] = 0.0
     parameters, address = laws.coupling_parameters[coupling], laws.couplings[coupling]
-    energy: float = call(address, parameters, w.m, w.n, B, gradients, forces, tangent)
+    energy: float = call(address, parameters, w.m, w.n, B, w.gradients, forces, tangent)
     for i in range(WORK):
         forces[i] += forces[WORK]
     return energy + forces[WORK]

@@ -51,19 +51,18 @@ from magshell.shell.level_stretch import (
 )
 from magshell.shell.point import ENHANCED, INTERNAL, MAGNETIC, MIXED, PHI, Q1, U1, W1, Q, Record, W
 from magshell.shell.rotation import LAST, NEXT, rotation_matrix, spin_map, wryness_maps
-from magshell.shell.varying_field import add_position, clear_position, finish_position, half_of_own, set_slopes
+from magshell.shell.varying_field import add_position, clear_position, finish_position, set_slopes
 
 
 class LocalField(NamedTuple):
-    """The field at the levels.
+    """The external field at the levels.
 
     Attributes
     ----------
     flux_density : ndarray, shape (elements, p, k, 3)
         T; of a uniform field, that of one element stands for all.
-    slopes : ndarray, shape (elements, p, k, 36 or 48), or None
-        First and second derivatives, T/m and T/m², and behind them B and ∇B of the body's own field, if that is part
-        of it; None: the field is uniform.
+    slopes : ndarray, shape (elements, p, k, 36), or None
+        First and second derivatives, T/m and T/m²; None: the field is uniform.
     """
 
     flux_density: FloatArray
@@ -227,8 +226,7 @@ def section(
     Fills the internal and the magnetic column of w.g; with a tangent also w.H, and the column of w.g that is the whole
     gradient which the geometric part is made with. Sets w.energy, elastic and magnetic. A point with det F <= 0, or
     whose levels have no equilibrium (0), leaves them unfinished. `across` (4, levels) is scratch; None where no section
-    stretches level by level. B (levels, 3) is the field, `slopes` (levels, 36 or 48) its derivatives; None: it is
-    uniform.
+    stretches level by level. B (levels, 3) is the field, `slopes` (levels, 36) its derivatives; None: it is uniform.
     """
     x, g, V, base, t, b, dg3, couples = w.x, w.g, w.V, w.base, w.t, w.b, w.dg3, w.couples
     laws, forces, tangent, by_level, c = request.laws, w.forces, request.tangent, False, 0.0
@@ -262,8 +260,6 @@ def section(
         for i in range(3):
             dg3[i] = scale * (point.D[i] + x[W + i])
         w.energy[MAGNETIC] += volume * work(w, laws, levels[k].coupling, B[k])
-        if slopes is not None:
-            w.energy[MAGNETIC] -= volume * half_of_own(w, laws, levels[k].coupling, slopes[k])
         for i in range(3):
             couples[MAGNETIC, i] += volume * forces[OMEGA + i]
             force = volume * forces[M + i]

@@ -12,10 +12,6 @@ x̄ is no part of the point's x (31,): its rows and columns of the Hessian stand
 `H_xx` (3, 3), until they go to the nodal u. Where levels have a stretch ζ of their own (`level_stretch.py`) φ is
 absent from x, and the coupling of x̄ with ζ, which is of the order of the thickness over the distance on which the
 field varies, is left out of the tangent. All of this is compiled only for fields that vary: `slopes` is None in others.
-
-Where the body's own field is part of B, twelve more numbers behind the derivatives of the whole field have its own
-share, B_own (3) and ∇B_own (9). Forces are those of the whole field. Of the energy, half of the own share counts, and
-the tangent is that of the rest of the field: how the own field changes with the body is as large as what it would add.
 """
 
 from __future__ import annotations
@@ -26,9 +22,8 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.compiled import allocate, inline
-from magshell.magnetics.law import GRADIENTS, OMEGA, WORK, M, X
+from magshell.magnetics.law import GRADIENTS, OMEGA, M, X
 from magshell.shell.element import Layout, contract
-from magshell.shell.level import Laws, work_in
 from magshell.shell.point import MAGNETIC, MIXED, PHI, SIZE, Q, Record, W
 
 
@@ -46,7 +41,7 @@ def slopes_scratch(slopes: FloatArray | None, levels: int) -> FloatArray | None:
     """Derivatives of the field at the levels of a point; None in a uniform field: then nothing of this is compiled."""
     if slopes is None:
         return None
-    return np.zeros((levels, slopes.shape[3]))
+    return np.zeros((levels, GRADIENTS))
 
 
 @inline
@@ -54,7 +49,7 @@ def copy_slopes(slopes: FloatArray | None, element: int, point: int, own: Any) -
     """Fill those of a point."""
     if slopes is not None:
         for k in range(slopes.shape[2]):
-            for i in range(slopes.shape[3]):
+            for i in range(GRADIENTS):
                 own[k, i] = slopes[element, point, k, i]
 
 
@@ -71,21 +66,6 @@ def set_slopes(w: Record, slopes: FloatArray) -> None:
     """Hand the gradients (36,) of a level to its law."""
     for i in range(GRADIENTS):
         w.gradients[i] = slopes[i]
-
-
-@inline
-def half_of_own(w: Record, laws: Laws, coupling: int, slopes: FloatArray) -> float:
-    """Half the energy per volume in the body's own field, which is taken out of the tangent; 0 where there is none."""
-    if len(slopes) == GRADIENTS:
-        return 0.0
-    for i in range(9):
-        w.own_gradients[i] = slopes[GRADIENTS + 3 + i]
-    B = slopes[GRADIENTS : GRADIENTS + 3]
-    energy = work_in(w, laws, coupling, B, w.own_gradients, w.own_forces, w.own_tangent)
-    for i in range(WORK):
-        for j in range(WORK):
-            w.work_tangent[i, j] -= w.own_tangent[i, j]
-    return 0.5 * energy
 
 
 @inline

@@ -120,10 +120,10 @@ class System(NamedTuple):
             return first
         from scipy.sparse.linalg import LinearOperator, gmres
 
-        units, left_out = discretisation.units, discretisation.left_out(self.instant(trial))
+        units, instant = discretisation.units, self.instant(trial)
 
         def product(scaled: FloatArray) -> FloatArray:
-            change = left_out(discretisation.direction(units * scaled))
+            change = discretisation.left_out(instant, discretisation.direction(units * scaled))
             return scaled + factors.solve(change) / units
 
         operator = LinearOperator((discretisation.dofs, discretisation.dofs), product, dtype=float)
