@@ -161,8 +161,7 @@ def buckling(
         raise InputError(f"buckling: modes is {modes}; it must lie between 1 and {discretisation.dofs - 2}")
     if not discretisation.exact_tangent:
         raise InputError(
-            "buckling: the tangent does not know how the body's own field follows the body; "
-            "leave self_field out"
+            "buckling: the tangent does not know how the body's own field follows the body; leave self_field out"
         )
     linear_solver = make_solver(settings.linear_solver)
     path = Path(model, discretisation, settings, linear_solver.name)

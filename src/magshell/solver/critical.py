@@ -9,8 +9,8 @@ shell is stable where it is zero. Where loads or couples have no potential the t
 product of the pivots is still the determinant, so that an odd change is a singular tangent passed; and a shell that has
 lost its stability by divergence has an odd number. It may oscillate unstably (flutter) without any sign of it here.
 
-Where the tangent leaves out how the body's own field follows the body, pivots say nothing. Limit points are found all the same,
-and there the path's own direction is the mode; bifurcations are not.
+Where the tangent leaves out how the body's own field follows the body, pivots say nothing. Limit points are found all
+the same, and there the path's own direction is the mode; bifurcations are not.
 """
 
 from __future__ import annotations
