@@ -390,6 +390,7 @@ TABLES: dict[str, tuple[type[schema.Table], dict[str, str]]] = {
             "sampled": "A grid, from a file.",
             "coils": "Coils by their calibration.",
             "spline_spacing": "Interpolates the field of magnets and coils, see [Splines](fields.md#splines).",
+            "self_field": "Whether [the body's own field](fields.md#the-bodys-own-field) acts on it.",
         },
     ),
     "source": (

@@ -10,7 +10,7 @@ import numpy as np
 from element_study.runs import Store
 
 import magshell as ms
-from magshell.evaluation.points import evaluate
+from magshell.shell.deformed import evaluate
 from published_study.problems import Divisions, Published, Variant
 
 CACHE = pathlib.Path(__file__).parents[2] / "results" / "published-study" / "runs.json"

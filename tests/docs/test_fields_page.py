@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from problem_files import STRIP, changed
 
+from magshell.magnetics.fields import SelfField
 from magshell.magnetics.fields.differences import STEP
 from magshell.magnetics.fields.lattice import NEAREST
 from magshell.problem.building import build
@@ -32,7 +33,7 @@ def test_python(code):
 
 
 def test_problem_file():
-    text, _ = BLOCKS["toml"]
+    text, _, own = BLOCKS["toml"]
     file = check(parse(WITHOUT + text, "page.toml"), "page.toml")
     field = build_field(file, pathlib.Path())
     assert field.stages == 3
@@ -40,10 +41,12 @@ def test_problem_file():
     assert B[0] == pytest.approx(0.8**1.5 * 4e-7 * np.pi * 240 / 0.1, rel=1e-6), "the axis of the pair is X1"
     assert B[2] > 0.1
     assert build(file, "page.toml").model.field.drives == field.drives
+    file = check(parse(WITHOUT + own, "page.toml"), "page.toml")
+    assert build(file, "page.toml").model.field.drives == SelfField.drives
 
 
 def test_moving_arm():
-    _, text = BLOCKS["toml"]
+    _, text, _ = BLOCKS["toml"]
     model = build(check(parse(WITHOUT + text, "page.toml"), "page.toml"), "page.toml").model
     assert [stage.name for stage in model.stages] == ["far", "approach", "retreat"]
     assert driven(model, 0) == "drives magnet.multiplier 0 to 1"

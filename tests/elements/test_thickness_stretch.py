@@ -11,8 +11,8 @@ import pytest
 import magshell as ms
 from magshell import problem
 from magshell.evaluation.converged import converged
-from magshell.evaluation.points import evaluate
 from magshell.problem.building import build
+from magshell.shell.deformed import evaluate
 
 
 @cache

@@ -8,7 +8,8 @@ import pytest
 import magshell as ms
 from magshell.evaluation.converged import Converged, converged
 from magshell.evaluation.patches import patches_of
-from magshell.evaluation.points import magnetic_torque, of_couplings
+from magshell.evaluation.points import magnetic_torque
+from magshell.shell.deformed import of_couplings
 
 LENGTH, WIDTH, THICKNESS = 20e-3, 4e-3, 0.8e-3
 MU, LAMBDA = 1e5, 4e5

@@ -151,8 +151,8 @@ def test_chosen_axes_turn_components_and_nothing_else():
 
 def test_energy_density_integrates_to_the_energy_of_the_points():
     """Against the laws evaluated at the points, and the couple stress; nothing of the kernels."""
-    from magshell.evaluation.points import evaluate as fields_at
     from magshell.evaluation.points import micropolar_stretch, of_materials
+    from magshell.shell.deformed import evaluate as fields_at
 
     d = free_body(patch((2, 2), distortion=0.2, surface=bowl), coupling=example(COUPLING))
     state = random_state(d, 4)

@@ -8,7 +8,7 @@ import pytest
 from examples.problems import value_at, variant
 from examples.references import MICROPOLAR_SOLID, STRIP_FIELDS, STRIPS, ZHAO_SOLID, Reference
 from magshell import Path, solve
-from magshell.evaluation.points import evaluate
+from magshell.shell.deformed import evaluate
 from magshell.solver import Settings
 
 NAME = "strip-10"

@@ -15,8 +15,8 @@ from examples.problems import PART_OF_THE_PUMP, read, value_at, variant
 from examples.references import FINE_MESH, SAME_MESH, STRIP_LENGTHS, Reference
 from magshell import Path, solve
 from magshell.equations.instant import Instant
-from magshell.evaluation.points import evaluate
 from magshell.reproduction.catalogue import EXAMPLES
+from magshell.shell.deformed import evaluate
 from magshell.solver import Settings, Step
 
 SAME_FORMULATION = 5e-3

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from problem.loaded import EVERY_LOAD
 from problem.magnetised import FIELDS, SURFACES, TEMPLATES
 from problem.test_staged_problems import STAGED
-from problem.with_sources import EVERY_SOURCE
+from problem.with_sources import EVERY_FIELD, EVERY_SOURCE, write_field_files
 from problem_files import JOINTED, LOADED, MIURA, PROFILE, STRIP, with_mesh
 
 import magshell as ms
@@ -64,7 +64,21 @@ FILES = with_mesh(
     '[mesh]\nfile = "part.msh"\nsecond_order = false\n\n[mesh.edge_groups]\nfar = { x1 = "20 mm" }\n\n',
 )
 TEXTS = st.sampled_from(
-    [LOADED, EVERY_LOAD, STAGED, FIELDS, SURFACES, TEMPLATES, FILES, PROFILE, MIURA, EVERY_SOURCE, JOINTED, *EXAMPLES]
+    [
+        LOADED,
+        EVERY_LOAD,
+        STAGED,
+        FIELDS,
+        SURFACES,
+        TEMPLATES,
+        FILES,
+        PROFILE,
+        MIURA,
+        EVERY_SOURCE,
+        EVERY_FIELD,
+        JOINTED,
+        *EXAMPLES,
+    ]
 )
 
 
@@ -105,6 +119,7 @@ VALUES = st.one_of(
         ["clamp", "simple", "symmetry", "prescribe", "constant", "circumferential", "meridional", "blocks"]
     ),
     st.sampled_from(["force", "moment", "traction", "pressure", "gravity"]),
+    st.sampled_from(["cylinder", "dipole", "halbach", "loop", "solenoid", "helmholtz", "grid.csv", "coils.csv"]),
     st.sampled_from(["radial", "tangential", "along-curve", "profile", "file", "rolled", "folded", "deformed"]),
     st.integers(-2, 60),
     st.builds(
@@ -150,6 +165,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ms.mesh.write(mesh, folder / "part.msh", "mm")
     rows = "".join(f"{2.5 + 5 * i},2.5,0,100,0,{i}\n" for i in range(4))
     (folder / "measured.csv").write_text(f"x1,x2,x3,b1,b2,b3\n{rows}")
+    write_field_files(folder)
     return folder
 
 
@@ -169,9 +185,11 @@ def refused_or_a_problem(data: dict[str, Any] | str, name: str, folder: Path) ->
         )
 
 
-def test_the_problem_with_files_is_one(folder: Path) -> None:
-    problem = build(check(parse(FILES, "files.toml"), "files.toml"), "files.toml", folder=folder)
-    assert len(problem.model.shell.mesh.elements) == 4
+@pytest.mark.parametrize(("text", "elements"), [(FILES, 4), (EVERY_FIELD, 4)])
+def test_the_problems_with_files_are_some(text: str, elements: int, folder: Path) -> None:
+    problem = build(check(parse(text, "files.toml"), "files.toml"), "files.toml", folder=folder)
+    assert len(problem.model.shell.mesh.elements) == elements
+    assert describe(problem).sections
 
 
 @share(0.25)

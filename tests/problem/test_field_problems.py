@@ -9,11 +9,21 @@ from problem_files import STRIP, changed
 import magshell as ms
 from magshell.cli import main
 from magshell.magnetics import fields
-from magshell.magnetics.fields import COILS, MAGNETS, FieldSum, GradientField, MagnetField, SampledField, UniformField
+from magshell.magnetics.fields import (
+    COILS,
+    MAGNETS,
+    FieldSum,
+    GradientField,
+    MagnetField,
+    SampledField,
+    SelfField,
+    UniformField,
+)
 from magshell.problem.building import build
 from magshell.problem.building.field import build_field
 from magshell.problem.building.located import at
 from magshell.problem.reading import check, parse
+from magshell.problem.report import describe
 from magshell.problem.schema import ProblemFile
 from magshell.problem.source_report import lines
 from problem.with_sources import EVERY, EVERY_SOURCE, GRADIENT, entry
@@ -106,6 +116,28 @@ def test_splines() -> None:
     base = changed(STRIP, ("stops = [", 'spline_spacing = "1 mm"\nstops = ['))
     assert field_of(MAGNET, base=base).fields[1].spacing == 1e-3
     assert ("splines", "spacing 1 mm") in list(lines(read(MAGNET, base=base)))
+
+
+def test_the_bodys_own_field() -> None:
+    """Beside the applied field, whose stops still hold, or alone; and what `check` says of it in any case."""
+    asked = changed(STRIP, ("stops = [", "self_field = true\nstops = ["))
+    field = field_of(base=asked)
+    assert [type(part) for part in field.fields] == [UniformField, SelfField]
+    model = build(read(base=asked), "test.toml").model
+    assert model.course(0).stops() == [0.5, 1.0]
+    assert model.loading(0.5).flux_density == pytest.approx([0, 0, 1e-3])
+    alone = build(read("\n[field]\nself_field = true\n", base=WITHOUT), "test.toml")
+    assert isinstance(alone.model.field, SelfField)
+    assert alone.model.field_magnitude == 0.0
+    for problem, ending in (
+        (build(read(), "test.toml"), "left out (self_field)"),
+        (build(read(base=asked), "test.toml"), "acts on it"),
+        (alone, "acts on it"),
+    ):
+        told = dict(describe(problem).sections["Field"])["the body's own field"]
+        assert told.startswith("up to ")
+        assert told.endswith(ending)
+        assert ("of the applied one" in told) == (problem is not alone)
 
 
 def test_gradient() -> None:

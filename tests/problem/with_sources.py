@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import pathlib
+
+import numpy as np
 from problem_files import STRIP
 
 EVERY = {
@@ -43,3 +46,38 @@ def entry(shape: str, more: str = "") -> str:
 EVERY_SOURCE = (
     STRIP + GRADIENT + "".join(entry(shape, MOVING if number % 2 else "") for number, shape in enumerate(EVERY))
 )
+
+EVERY_FIELD = (
+    STRIP.replace("stops = [", 'spline_spacing = "1 mm"\nself_field = true\nstops = [')
+    + """
+[field.sampled]
+file = "grid.csv"
+flux_density_unit = "mT"
+length_unit = "mm"
+history = [1, 0.5]
+displacement = [[0, 0, 0], [0, 0, "1 mm"]]
+
+[field.coils]
+calibration = "coils.csv"
+currents = [["2 A", "-1000 mA"], ["1 A", 0]]
+centre = ["10 mm", 0, 0]
+
+[[stages]]
+name = "on"
+
+[[stages]]
+name = "moved"
+"""
+    + entry("loop", MOVING)
+    + entry("cylinder", MOVING.replace('rotation_centre = [0, 0, "1 mm"]\n', ""))
+)
+"""With the files `grid.csv` and `coils.csv`."""
+
+
+def write_field_files(folder: pathlib.Path) -> None:
+    """A grid of 4 × 4 × 4 positions about the strip, and the calibration of two coils."""
+    axes = [np.linspace(low, high, 4) for low, high in ((-50, 60), (-50, 60), (-50, 50))]
+    places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    rows = np.column_stack([places, np.tile([0.0, 0.1, 3.0], (len(places), 1))])
+    np.savetxt(folder / "grid.csv", rows, delimiter=",", header="x1,x2,x3,b1,b2,b3", comments="")
+    np.savetxt(folder / "coils.csv", np.eye(8)[:, :2], delimiter=",")

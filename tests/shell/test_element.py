@@ -20,7 +20,7 @@ from battery import (
 
 from magshell import magnetics
 from magshell.equations.instant import Instant
-from magshell.evaluation.points import evaluate
+from magshell.shell.deformed import evaluate
 from shell import oracle
 
 # Round-off of some 10⁴ products and of the condensation's division, which costs the condition number of K_αα (10–100).

@@ -7,7 +7,7 @@ from battery import PATCHES, REMANENCE, each_element, free_body, homogeneous, ra
 from scipy.spatial.transform import Rotation
 
 from magshell.evaluation.converged import Converged
-from magshell.evaluation.points import evaluate
+from magshell.shell.deformed import evaluate
 from shell import jets, oracle
 
 

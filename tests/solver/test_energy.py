@@ -17,7 +17,7 @@ import magshell as ms
 from magshell import DeformationGradientEnergy, Model, Path, Settings, Step, solve
 from magshell.equations.instant import Instant
 from magshell.evaluation.converged import converged
-from magshell.evaluation.points import evaluate
+from magshell.shell.deformed import evaluate
 from solver.arches import arch, to_the_crown_at
 from solver.models import LENGTH, THICKNESS, rubber
 from solver.models import strip as field_strip

@@ -16,10 +16,14 @@ from magshell.equations.frames import to_frames, to_global
 from magshell.equations.insertion import Insertion
 from magshell.equations.instant import STATIC, Increment, Instant, Prediction
 from magshell.equations.loads import LoadTerm
+from magshell.equations.local_field import FieldAtLevels
+from magshell.equations.magnets import Magnets
 from magshell.equations.numbering import Numbering, Ordering
+from magshell.equations.own_field import OwnField
 from magshell.equations.shell import ShellTerm
 from magshell.equations.springs import SpringTerm
 from magshell.equations.term import Term, squares_by_kind
+from magshell.magnetics.fields.own import has_own, own_multiplier
 from magshell.model.course import Loading
 from magshell.model.hinge_springs import hinge_springs
 from magshell.model.model import Model
@@ -29,6 +33,8 @@ from magshell.shell.state import State
 from magshell.shell.unknowns import COLUMNS, COMPONENTS, UNKNOWNS
 
 KINDS = (*COLUMNS, "alpha")
+# Largest change of an unknown, in its unit, over which the body's own field is differentiated.
+DIFFERENCE = 1e-6
 
 
 class Assembly(NamedTuple):
@@ -95,12 +101,15 @@ class Discretisation:
         make = make_of(model)
         self.reference, self.materials = reference_of_model(model, make), make.materials
         self.couplings = make.couplings
-        self.shell = ShellTerm(self.reference, len(self.rows.of), stiffest_of(make), model.field)
+        magnets = Magnets(model.shell, self.rows)
+        own = self._own_field(magnets)
+        field = FieldAtLevels(model.field, self.reference, own)
+        self.shell = ShellTerm(self.reference, len(self.rows.of), stiffest_of(make), field)
         self.loads = LoadTerm(model.applied, model.constraints)
         self.springs = SpringTerm(model.elastic, model.constraints)
         hinges = hinge_springs(model.shell, self.rows)
         self.hinges = SpringTerm(hinges, model.constraints)
-        self.dipoles = DipoleTerm(model.shell, self.rows, model.field, model.constraints)
+        self.dipoles = DipoleTerm(magnets, model.field, own, model.constraints)
         nodal = (self.loads, self.springs, self.hinges, self.dipoles)
         users = (model.applied, model.elastic, hinges, self.dipoles.present)
         self._nodal = [term for term, some in zip(nodal, users, strict=True) if some]
@@ -117,6 +126,43 @@ class Discretisation:
         for term in nodal:
             term.place(self._insertion, self.dependence)
         self._noise = _sum(term.noise() for term in self.terms)
+
+    def _own_field(self, magnets: Magnets) -> OwnField | None:
+        """The body's own field, if it is a part of the field."""
+        if not has_own(self.model.field):
+            return None
+        shell = self.model.shell
+        return OwnField(self.reference, self.couplings, shell.element, shell.mesh.elements, magnets)
+
+    @property
+    def exact_tangent(self) -> bool:
+        """Whether the tangent is the derivative of the residual; `left_out` is what is missing."""
+        return self.shell.field.own is None
+
+    def left_out(self, instant: Instant, increment: Increment) -> FloatArray:
+        """Product (dofs,) of the derivative that the tangent has not, of the body's own field, with an increment.
+
+        By a difference over a small part of the increment.
+        """
+        own, multiplier = self.shell.field.own, own_multiplier(self.model.field, instant.loading.drives)
+        product, largest = np.zeros(self.dofs), self.largest(increment)[0]
+        if own is None or not multiplier or not largest:
+            return product
+        size = DIFFERENCE / largest
+        change = own.change(instant.state, self.moved(instant.state, size * increment), size)
+        residual = self.shell.own_rate(instant, change, multiplier)
+        if self.dipoles.present:
+            residual += self.to_frames(self.dipoles.own_rate(instant, change, multiplier))
+        product[self.numbering.equations] = self.rows.folded(residual)[self.free]
+        return product
+
+    @property
+    def units(self) -> FloatArray:
+        """Of the unknowns (dofs,): body lengths, directors, thickness ratios and radians."""
+        units, found = np.empty(self.free.shape), np.empty(self.dofs)
+        units[:] = [self._unit(column) for column in range(COMPONENTS)]
+        found[self.numbering.equations] = units[self.free]
+        return found
 
     @property
     def normals(self) -> FloatArray:

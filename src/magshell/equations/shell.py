@@ -10,11 +10,12 @@ from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.equations.frames import to_frames, to_global
 from magshell.equations.insertion import Insertion, destination, summed
 from magshell.equations.instant import STATIC, Increment, Instant, Prediction, Weights
-from magshell.equations.local_field import FieldAtLevels
+from magshell.equations.local_field import FieldAtLevels, with_own
 from magshell.equations.numbering import Numbering
+from magshell.equations.own_field import Own
 from magshell.equations.scatter import Destination, Elements, add_matrices, turn_matrices
 from magshell.equations.term import Contribution, InvertedElement
-from magshell.magnetics.fields import Field
+from magshell.magnetics.law import GRADIENTS
 from magshell.model.constraints import Constraints
 from magshell.model.course import Loading
 from magshell.model.model import NO_FIELD
@@ -22,6 +23,7 @@ from magshell.shell import loops
 from magshell.shell.body import Reference
 from magshell.shell.element import padded
 from magshell.shell.geometry import unit_forces
+from magshell.shell.point import MAGNETIC
 from magshell.shell.section import LocalField, Request
 from magshell.shell.unknowns import COLUMNS, COMPONENTS
 
@@ -43,13 +45,15 @@ class ShellTerm:
         Of the mesh.
     stiffest : ndarray, shape (elements, levels)
         Largest modulus of the material, Pa.
-    field : Field, optional
+    field : FieldAtLevels, optional
         By default none.
     """
 
-    def __init__(self, reference: Reference, nodes: int, stiffest: FloatArray, field: Field = NO_FIELD) -> None:
+    def __init__(
+        self, reference: Reference, nodes: int, stiffest: FloatArray, field: FieldAtLevels | None = None
+    ) -> None:
         self.body, self._nodes = reference.body, nodes
-        self.field = FieldAtLevels(field, reference)
+        self.field = FieldAtLevels(NO_FIELD, reference) if field is None else field
         layout, count = self.body.layout, len(self.body.elements)
         carrying = [layout.u] * 3 + [layout.w] * 3 + [layout.phi] + [layout.q] * 3 + [layout.s]
         node = np.concatenate([np.arange(number) for number in carrying])
@@ -84,6 +88,7 @@ class ShellTerm:
     ) -> Contribution:
         """See `Term`."""
         field = self.field.at(instant.state, instant.loading, second=insertion is not None)
+        self._evaluated = instant
         return self._evaluate(instant, field, weights, insertion, imposed)
 
     def _evaluate(
@@ -136,15 +141,17 @@ class ShellTerm:
 
     def evaluated_energy(self) -> FloatArray:
         """The same at the instant that was evaluated last."""
-        return self._filled.energy.copy()
+        energy = self._filled.energy.copy()
+        energy[:, MAGNETIC] -= self.field.half_energy(self._evaluated.state, self._evaluated.loading)
+        return energy
 
     def load_rate(self, instant: Instant, rate: Loading) -> FloatArray:
         """See `Term`. Residuals are linear in the field, unless levels have stretches that follow it."""
         if not np.any(rate.drives):
             return np.zeros((self._nodes, COMPONENTS))
+        along = self.field.rate(instant.state, instant.loading, rate)
         still, change = Instant(instant.state, instant.loading), np.zeros((self._nodes, COMPONENTS))
         now = self.field.at(instant.state, instant.loading, second=False)
-        along = self.field.rate(instant.state, instant.loading, rate)
         for step, weight in FORWARD if self.body.by_level is None else CENTRAL:
             there = LocalField(
                 now.flux_density + step * along.flux_density,
@@ -152,6 +159,14 @@ class ShellTerm:
             )
             change += weight * self._evaluate(still, there, STATIC, None, None).residual
         return change
+
+    def own_rate(self, instant: Instant, change: Own, multiplier: float) -> FloatArray:
+        """Derivative of the residual (nodes, 11) along a multiple of a change of the body's own field."""
+        shape, still = self.body.levels.shape, Instant(instant.state, instant.loading)
+        nothing = LocalField(np.zeros((*shape, 3)), np.zeros((*shape, GRADIENTS)))
+        fields = with_own(nothing, change, multiplier), nothing
+        whole, rest = (self._evaluate(still, field, STATIC, None, None).residual for field in fields)
+        return whole - rest
 
     def predict(self, instant: Instant, increment: Increment) -> Prediction:
         """See `Term`."""

@@ -19,11 +19,11 @@ from magshell.arrays import FloatArray
 from magshell.equations.discretisation import Discretisation
 from magshell.equations.local_field import shaped
 from magshell.evaluation import points
-from magshell.evaluation.points import evaluate, level_stretch, of_couplings
 from magshell.evaluation.reactions import held_forces
 from magshell.magnetics.fields import Field
 from magshell.magnetics.law import X
 from magshell.model.course import Loading
+from magshell.shell.deformed import evaluate, level_stretch, of_couplings
 from magshell.shell.positions import level_positions
 from magshell.shell.rotation import cross
 from magshell.shell.section import LocalField

@@ -12,7 +12,6 @@ from magshell.equations.discretisation import Assembly, Discretisation
 from magshell.equations.instant import Instant
 from magshell.evaluation.balance import Balance, magnetic
 from magshell.evaluation.patches import patches_of
-from magshell.evaluation.points import PointFields, evaluate, level_stretch, of_couplings
 from magshell.evaluation.points import magnetic_torque as torque_of_points
 from magshell.evaluation.reactions import Reaction, held_forces, reactions
 from magshell.evaluation.resultants import Resultants
@@ -23,6 +22,7 @@ from magshell.magnetics.fields.field import known
 from magshell.magnetics.law import X
 from magshell.model.course import Loading
 from magshell.shell import rotation
+from magshell.shell.deformed import PointFields, evaluate, level_stretch, of_couplings
 from magshell.shell.point import INTERNAL
 from magshell.shell.section import LocalField
 from magshell.shell.state import State
@@ -189,6 +189,10 @@ class Converged:
     def flux_density(self) -> FloatArray:
         """External flux density at the deformed nodes (nodes, 3), T; NaN where the field is not known."""
         return known(self.discretisation.model.field, self.loading.drives, self.mesh.points + self.displacement)
+
+    def self_flux_density(self) -> FloatArray:
+        """What the body's own field adds (elements, 3), T, mean over the element; zero where it does not act."""
+        return self.mean(self.discretisation.shell.field.own_at(self.state, self.loading))
 
     def director(self) -> FloatArray:
         """Director d at the rows of the patches (rows, 3): that of the sheet and the section."""

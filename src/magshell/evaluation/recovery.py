@@ -21,7 +21,7 @@ from magshell.evaluation import neighbours, points
 from magshell.evaluation.extrapolation import to_nodes
 from magshell.evaluation.neighbours import Neighbours, turned
 from magshell.evaluation.patches import Patches, patches_of
-from magshell.evaluation.points import Levels
+from magshell.shell.deformed import Levels
 
 PARALLEL = np.sin(np.radians(0.1))
 """A direction that is closer to the normal than this has no projection on the surface."""

@@ -19,9 +19,9 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.evaluation import points
-from magshell.evaluation.points import PointFields
 from magshell.evaluation.strain import Deformation
 from magshell.magnetics.law import M
+from magshell.shell.deformed import PointFields, of_couplings
 from magshell.shell.rotation import cross
 from magshell.shell.section import LocalField
 from magshell.shell.state import State
@@ -56,7 +56,7 @@ class Resultants:
         d, fields = self._discretisation, self._fields
         U = points.micropolar_stretch(fields)
         P = fields.R[:, :, None] @ points.of_materials(d.reference, d.materials, U)[1]
-        forces = points.of_couplings(d.reference, d.couplings, fields, self._field)[..., M : M + 3]
+        forces = of_couplings(d.reference, d.couplings, fields, self._field)[..., M : M + 3]
         T = P + forces[..., None] * d.reference.remanence[..., None, :]
         return T * (d.reference.geometry.volume * self._per_area[..., None])[..., None, None]
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from magshell.evaluation import maxima
 from magshell.evaluation.converged import Converged
+from magshell.magnetics.fields import SelfField
 from magshell.magnetics.law import is_conservative
 from magshell.model.model import Model
 from magshell.shell.point import INTERNAL, MAGNETIC
@@ -64,7 +65,7 @@ def _of_sources(model: Model) -> list[str]:
     """Columns of the parts of a field that varies, by the names that their amounts have."""
     if model.field.is_uniform:
         return []
-    parts = dict.fromkeys(drive.rpartition(".")[0] for drive in model.field.drives)
+    parts = dict.fromkeys(drive.rpartition(".")[0] for drive in model.field.drives if drive not in SelfField.drives)
     return [f"{part}.{letter}{i}" for part in parts for letter in ("F", "T") for i in (1, 2, 3)]
 
 

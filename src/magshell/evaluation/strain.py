@@ -21,6 +21,7 @@ from magshell.equations.discretisation import Discretisation
 from magshell.evaluation import points
 from magshell.evaluation.recovery import Recovery, recovery_of
 from magshell.materials.law import evaluate as evaluate_law
+from magshell.shell.deformed import evaluate
 from magshell.shell.state import State
 
 FACES = ("top", "middle", "bottom")
@@ -72,7 +73,7 @@ class Deformation:
         reference, faces = discretisation.reference, self.recovery.faces
         if zeta is not None:
             faces = faces._replace(zeta=points.at_heights(reference, zeta, faces.z))
-        fields = points.evaluate(reference, state, None, faces)
+        fields = evaluate(reference, state, None, faces)
         fields = points.with_warping(reference, fields, faces.warping)
         frames = self.recovery.points
         self.F = np.moveaxis(fields.F, 2, 0) @ np.swapaxes(frames, -1, -2)

@@ -107,13 +107,15 @@ class Course(NamedTuple):
             return np.zeros(3)
 
     def stops(self) -> list[float]:
-        """Load factors that the path must hit, 1 the last: the stage's own, and where |B| meets the field's stops."""
+        """Load factors that the path must hit, 1 the last: the stage's own, and where a uniform part meets its."""
         factors = {1.0, *np.asarray(self.stage.stops, dtype=float).tolist()}
-        start, change = float(self.start.drives[0]), float(self.end.drives[0] - self.start.drives[0])
-        if isinstance(self.field, UniformField) and change:
-            for stop in np.asarray(self.field.stops, dtype=float).tolist():
-                for multiplier in (stop / self.field.magnitude, -stop / self.field.magnitude):
-                    factors.add((multiplier - start) / change)
+        parts = zip(self.field.parts(self.start.drives), self.field.parts(self.end.drives), strict=True)
+        for (part, before), (_, after) in parts:
+            if not isinstance(part, UniformField) or before[0] == after[0]:
+                continue
+            for stop in np.asarray(part.stops, dtype=float).tolist():
+                for multiplier in (stop / part.magnitude, -stop / part.magnitude):
+                    factors.add(float((multiplier - before[0]) / (after[0] - before[0])))
         rising: list[float] = []
         for factor in sorted(factor for factor in factors if SAME_STOP < factor < 1.0 - SAME_STOP):
             if not rising or factor - rising[-1] > SAME_STOP:

@@ -16,6 +16,7 @@ from magshell.drawing import drawing
 from magshell.errors import InputError, NothingLoads, suggest
 from magshell.magnetics.deformation_gradient_energy import DeformationGradientEnergy
 from magshell.magnetics.fields import Field, FieldUnknown, UniformField
+from magshell.magnetics.fields.own import has_own
 from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.model import coupling_limit, doubts, symmetry
 from magshell.model.constraints import Constraints, resolve
@@ -215,7 +216,7 @@ class Model:
             return "a moment"
         if any(one.column_field == "omega" and nodes[one.columns].any() for one in pairs):
             return "a follower"
-        field = self.largest_field > 0.0 and not isinstance(self.coupling, DeformationGradientEnergy)
+        field = self.fields_act and not isinstance(self.coupling, DeformationGradientEnergy)
         if field and (len(self.shell.parts) == 1 or np.any(part.remanence)):
             return type(self.coupling).__name__
         return ""
@@ -224,7 +225,7 @@ class Model:
         if any(np.any(amounts.held) or np.any(amounts.loads) for amounts in self._ends):
             return
         otherwise = "and no support moves, nor is there a load: nothing loads the shell"
-        if not self.largest_field:
+        if not self.fields_act:
             raise NothingLoads(f"field: flux_density is zero {otherwise}")
         if not self.shell.magnetised and not any(np.any(body.moment) for body in self.shell.rigid):
             raise NothingLoads(f"remanence: it is zero everywhere {otherwise}")
@@ -258,6 +259,11 @@ class Model:
         if isinstance(self.field, UniformField):
             return max(abs(float(amounts.drives[0])) for amounts in self._ends) * self.field.magnitude
         return self._largest_at_nodes
+
+    @property
+    def fields_act(self) -> bool:
+        """Whether there is an applied field, or that of the body itself acts on it."""
+        return self.largest_field > 0.0 or has_own(self.field)
 
     @property
     def field_magnitude(self) -> float:

@@ -16,6 +16,7 @@ from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import Output, chosen
 from magshell.evaluation.patches import patches_of
 from magshell.files import naming, refuse_somebodys, with_suffix, write_atomically
+from magshell.magnetics.fields.own import has_own
 from magshell.model.words import name_of
 from magshell.shell.triangle import REPEATED, SLOTS
 from magshell.solver.events import Observer
@@ -33,6 +34,7 @@ VTK_QUADRATIC_QUAD = 23
 VTK_QUADRATIC_TRIANGLE = 22
 END = b"</VTKFile>\n"
 IN_FIELDS_THAT_VARY = ("flux_density", "magnetic_force_density")
+WITH_OWN_FIELD = ("self_flux_density",)
 
 
 class VtuWriter(Observer):
@@ -159,7 +161,8 @@ def grid(discretisation: Discretisation, step: Step | CriticalPoint | BucklingMo
 
     mesh, patches = discretisation.mesh, patches_of(discretisation.model.shell)
     varies = () if discretisation.model.field.is_uniform else IN_FIELDS_THAT_VARY
-    outputs = chosen([*discretisation.model.outputs, *varies])
+    own = WITH_OWN_FIELD if has_own(discretisation.model.field) else ()
+    outputs = chosen([*discretisation.model.outputs, *varies, *own])
     cells = np.insert(patches.elements, 0, np.where(mesh.triangles, len(SLOTS), 8), axis=1)
     kept = np.ones(cells.shape, dtype=bool)
     kept[np.ix_(mesh.triangles, 1 + REPEATED)] = False

@@ -73,7 +73,7 @@ def describe(problem: Problem) -> Report:
             **({"Regions": list(region_report.lines(problem))} if several else {}),
             **({} if several else {"Material": list(_material(problem, figures.parts[0]))}),
             "Remanence": list(_remanence(problem, figures)),
-            "Field": [*_field(problem, figures), *source_report.lines(problem.file)],
+            "Field": [*_field(problem, figures), *source_report.lines(problem.file), *source_report.own(problem.model)],
             **({"Loads": list(load_report.lines(problem, strong))} if problem.file.loads else {}),
             **({"Supports": list(_supports(problem, figures))} if problem.model.supports else {}),
             **({"Springs": list(_springs(problem, figures))} if problem.model.springs else {}),
@@ -206,6 +206,8 @@ def _field(problem: Problem, figures: Whole) -> Iterator[tuple[str, str]]:
     table = problem.file.field
     if figures.field == 0.0:
         yield "flux density B", "none"
+        if problem.model.fields_act:
+            yield "coupling law", table.coupling
         return
     if any(table.vector):
         yield "flux density B", quantity(table.vector, FLUX_DENSITY)

@@ -6,7 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from magshell.magnetics.fields.own import has_own
 from magshell.model.model import Model
+from magshell.model.own_strength import own_strength
 from magshell.problem import schema
 from magshell.problem.building.field import placed
 from magshell.units import ANGLE, FLUX_DENSITY, FLUX_GRADIENT, LENGTH, NUMBER, show
@@ -39,6 +41,20 @@ def at_shell(model: Model) -> Iterator[tuple[str, str]]:
     steepest = max(float(np.abs(values.gradient).max()) for values in ends)
     yield "largest |B| at the shell", show(strongest, FLUX_DENSITY)
     yield "largest ∂B_i/∂x_j", show(steepest, FLUX_GRADIENT)
+
+
+def own(model: Model) -> Iterator[tuple[str, str]]:
+    """How strong the field of the body's own remanence is beside the applied one, and whether it acts."""
+    if not model.shell.magnetised and not any(np.any(body.moment) for body in model.shell.rigid):
+        return
+    found, applied = own_strength(model.shell), model.largest_field
+    share = f", {found.flux_density / applied:.2g} of the applied one" if applied else ""
+    acts = "acts on it" if has_own(model.field) else "left out (self_field)"
+    yield (
+        "the body's own field",
+        f"up to {show(found.flux_density, FLUX_DENSITY)} from parts farther than {show(found.beyond, LENGTH)}{share}; "
+        f"{acts}",
+    )
 
 
 def driven(model: Model, stage: int) -> str:

@@ -151,7 +151,7 @@ def buckling(
     Raises
     ------
     InputError
-        Not a count of modes that this shell can have.
+        Not a count of modes that this shell can have, or a field of the body itself.
     SolveError
         The stages before cannot be followed, or the tangent about their end is singular.
     """
@@ -159,6 +159,10 @@ def buckling(
     discretisation = Discretisation(model, nested_dissection)
     if not 1 <= modes <= discretisation.dofs - 2:
         raise InputError(f"buckling: modes is {modes}; it must lie between 1 and {discretisation.dofs - 2}")
+    if not discretisation.exact_tangent:
+        raise InputError(
+            "buckling: the tangent does not know how the body's own field follows the body; leave self_field out"
+        )
     linear_solver = make_solver(settings.linear_solver)
     path = Path(model, discretisation, settings, linear_solver.name)
     follower = Follower(path, System(discretisation, linear_solver, model.course(0), settings), observers)

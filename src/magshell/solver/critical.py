@@ -8,6 +8,9 @@ For a symmetric tangent the number of negative pivots is that of its negative ei
 shell is stable where it is zero. Where loads or couples have no potential the tangent is not symmetric. Then the
 product of the pivots is still the determinant, so that an odd change is a singular tangent passed; and a shell that has
 lost its stability by divergence has an odd number. It may oscillate unstably (flutter) without any sign of it here.
+
+Where the tangent leaves out how the body's own field follows the body, pivots say nothing. Limit points are found all
+the same, and there the path's own direction is the mode; bifurcations are not.
 """
 
 from __future__ import annotations
@@ -234,7 +237,9 @@ class _Search:
             raise StepFailure("the load factor turns where the tangent is not singular")
         point = self.point(distance)
         assert self.factors is not None
-        mode = self.system.discretisation.direction(self.factors.smallest_eigenpair()[1]).nodal
+        mode = point.slope.increment.nodal
+        if self.system.discretisation.exact_tangent:
+            mode = self.system.discretisation.direction(self.factors.smallest_eigenpair()[1]).nodal
         return Found(LIMIT_POINT, point, normalised(mode), sides)
 
 

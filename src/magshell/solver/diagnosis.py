@@ -30,11 +30,11 @@ import numpy as np
 from magshell.arrays import FloatArray
 from magshell.equations.discretisation import Discretisation
 from magshell.evaluation.converged import Converged
-from magshell.evaluation.points import evaluate, level_stretch
 from magshell.magnetics import law
 from magshell.magnetics.law import OMEGA
 from magshell.model.course import Loading
 from magshell.model.parts import REST
+from magshell.shell.deformed import evaluate, level_stretch
 from magshell.shell.state import State
 from magshell.solver.extension import Extension, extension
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from magshell.arrays import FloatArray
 from magshell.equations.discretisation import Discretisation
-from magshell.evaluation.points import evaluate
+from magshell.shell.deformed import evaluate
 from magshell.shell.state import State
 
 

@@ -283,13 +283,13 @@ class Follower:
             return ""
         first = turns[0]
         since = [step for step in self.path.steps if step.stage == self.stage and step.arc_length > first.arc_length]
-        unstable = sum(bool(step.negative_pivots) for step in since)
+        known = [step.negative_pivots for step in since if step.negative_pivots is not None]
+        unstable = f"; {sum(map(bool, known))} of the {len(since)} states since are unstable" if known else ""
         more = len(turns) - 1
         again = f", and {more} more time{'s' * (more != 1)} after it" if more else ""
         return (
-            f" The load factor turned at {first.load_factor:.6g} (critical point {first.number}){again}; {unstable} of "
-            f"the {len(since)} states since are unstable. A path of equilibria does not show "
-            "where the body jumps to under a growing load."
+            f" The load factor turned at {first.load_factor:.6g} (critical point {first.number}){again}{unstable}. "
+            "A path of equilibria does not show where the body jumps to under a growing load."
         )
 
     def _turns(self) -> list[CriticalPoint]:

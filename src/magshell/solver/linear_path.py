@@ -27,10 +27,10 @@ import scipy.sparse as sp
 
 from magshell.equations.instant import Instant, Prediction, combined
 from magshell.equations.term import FieldLost, InvertedElement
-from magshell.evaluation.points import evaluate
 from magshell.linalg import Factorisation
 from magshell.linalg.factorisation import scaled
 from magshell.model.course import Loading
+from magshell.shell.deformed import evaluate
 from magshell.shell.state import State
 from magshell.solver.newton import StepFailure, System, factorise
 

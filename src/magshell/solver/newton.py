@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from magshell.arrays import FloatArray
 from magshell.equations.discretisation import Assembly, Discretisation
 from magshell.equations.instant import Increment, Instant, Prediction
 from magshell.equations.term import FieldLost, InvertedElement
@@ -28,6 +29,8 @@ HALVINGS = 4
 ROUND_OFF = 1e-5
 # An increment of so many body lengths or radians says that the tangent is singular to round-off.
 ABSURD = 1e8
+# Of GMRES: the residual that it leaves, and its largest number of vectors.
+FORCING, MOST_VECTORS = 1e-5, 60
 
 
 class StepFailure(ArithmeticError):
@@ -98,7 +101,37 @@ class System(NamedTuple):
         """Increment per load factor, by the factors of a tangent."""
         discretisation, rate = self.discretisation, self.course.rate(trial.load_factor)
         direction = discretisation.load_direction(self.instant(trial), rate, assembly)
-        return discretisation.direction(factors.solve(direction), discretisation.imposed(rate.held))
+        solution = self.solved(trial, factors, direction)
+        return discretisation.direction(solution, discretisation.imposed(rate.held))
+
+    def solved(self, trial: Trial, factors: Factorisation, right_side: FloatArray) -> FloatArray:
+        """Solution (dofs,) of the derivative of the residual, with the factors of the tangent.
+
+        Where that leaves something out, by GMRES with these factors as preconditioner.
+
+        Raises
+        ------
+        StepFailure
+            The body's own field is not known beside the trial.
+        """
+        discretisation = self.discretisation
+        first = factors.solve(right_side)
+        if discretisation.exact_tangent or not np.isfinite(first).all():
+            return first
+        from scipy.sparse.linalg import LinearOperator, gmres
+
+        units, instant = discretisation.units, self.instant(trial)
+
+        def product(scaled: FloatArray) -> FloatArray:
+            change = discretisation.left_out(instant, discretisation.direction(units * scaled))
+            return scaled + factors.solve(change) / units
+
+        operator = LinearOperator((discretisation.dofs, discretisation.dofs), product, dtype=float)
+        try:
+            found, _ = gmres(operator, first / units, rtol=FORCING, restart=MOST_VECTORS, maxiter=1)
+            return np.asarray(units * found)
+        except (InvertedElement, FieldLost) as failure:
+            raise _failed(failure) from None
 
 
 def newton(
@@ -138,7 +171,7 @@ def newton(
             raise StepFailure(f"the iteration diverges (residual of {kind}: {residual:.1e})")
         factors = None  # two sets of factors at a time would be twice the memory
         factors = factorise(system, assembly)
-        increment = discretisation.correction(factors.solve(assembly.right_side))
+        increment = discretisation.correction(system.solved(trial, factors, assembly.right_side))
         d_load = 0.0
         if constraint is not None:
             per_load = system.per_load(trial, assembly, factors)

@@ -59,7 +59,7 @@ class Point(NamedTuple):
     prediction : Prediction
         Of that state, for mixed tangents nearby.
     negative_pivots : int or None
-        Of the tangent; None where the linear solver cannot tell.
+        Of the tangent; None where the linear solver cannot tell, or the tangent leaves something out.
     """
 
     arc_length: float
@@ -207,7 +207,8 @@ def point_at(
     side = -1.0 if metric.product((per_load.u, 1.0), along) < 0.0 else 1.0
     slope = Slope(side / length * per_load, side / length)
     prediction = system.predicted(trial.state, trial.load_factor)
-    return Point(arc_length, trial.load_factor, trial.state, slope, prediction, factors.negative_pivots())
+    pivots = factors.negative_pivots() if system.discretisation.exact_tangent else None
+    return Point(arc_length, trial.load_factor, trial.state, slope, prediction, pivots)
 
 
 def arc(metric: Metric, chord: Direction, first: Slope, second: Slope) -> float:

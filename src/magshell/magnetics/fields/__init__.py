@@ -11,6 +11,7 @@ from magshell.magnetics.fields.grids import read_grid
 from magshell.magnetics.fields.laboratory import CoilSystem, GradientField
 from magshell.magnetics.fields.magnets import Cuboid, Cylinder
 from magshell.magnetics.fields.motion import Motion
+from magshell.magnetics.fields.own import SelfField
 from magshell.magnetics.fields.polyhedron import Polyhedron
 from magshell.magnetics.fields.rings import CylinderSegment, Ring
 from magshell.magnetics.fields.sampled import SampledField
@@ -53,6 +54,7 @@ __all__ = [
     "RectangularWinding",
     "Ring",
     "SampledField",
+    "SelfField",
     "Shape",
     "Solenoid",
     "Source",

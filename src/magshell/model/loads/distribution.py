@@ -121,6 +121,12 @@ def nodal_areas(shell: Shell, members: IntArray) -> FloatArray:
     return areas
 
 
+def element_areas(shell: Shell) -> FloatArray:
+    """Undeformed area (elements,) of each element, m²."""
+    mesh = shell.mesh
+    return np.asarray(_element_functions(mesh.points[mesh.elements], shell.element, "u")[1].sum(axis=1))
+
+
 def _along_edges(points: FloatArray, quadratic: bool) -> FloatArray:
     """Integrals (edges, 3) of the functions of end, end and middle over the length of edges (edges, 3, 3), m."""
     functions, lengths = _edge_functions(points, quadratic)

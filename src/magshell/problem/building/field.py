@@ -1,4 +1,6 @@
-"""The field of a problem: its uniform part, magnets and coils grouped by how they move, gradient, grid, coil system."""
+"""The field of a problem: its uniform part, magnets and coils grouped by how they move, gradient, grid, coil system,
+and the field of the body itself.
+"""
 
 from __future__ import annotations
 
@@ -17,6 +19,7 @@ from magshell.magnetics.fields import (
     GradientField,
     MagnetField,
     Motion,
+    SelfField,
     Source,
     UniformField,
     read_grid,
@@ -89,6 +92,8 @@ def _others(table: schema.FieldTable, folder: pathlib.Path) -> Iterator[Field]:
                 raise InputError("currents: every stage needs as many currents as the first")
             calibration = _calibration(folder / system.calibration)
             yield CoilSystem(calibration, system.currents, system.centre, system.name or "coils")
+    if table.self_field:
+        yield SelfField()
 
 
 def _motion(table: Any, centre: tuple[float, float, float] | None = None) -> Motion:

@@ -27,11 +27,12 @@ class FieldTable(Table):
     sampled: SampledTable | None = None
     coils: CoilSystemTable | None = None
     spline_spacing: f.PositiveLength | None = None
+    self_field: bool = False
 
     @property
     def varies(self) -> bool:
         """Whether there is more than the uniform part."""
-        return any(part is not None for part in (self.gradient, self.sampled, self.coils))
+        return self.self_field or any(part is not None for part in (self.gradient, self.sampled, self.coils))
 
     @property
     def uniform_fault(self) -> tuple[str, str] | None:
