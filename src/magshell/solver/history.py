@@ -75,7 +75,7 @@ class History:
 
     def _before(self, step: Step) -> tuple[Acting | None, Work]:
         """What acts at the state on the path before a step, and the work up to there."""
-        if self._last is None:
+        if self._last is None or (step.number == 1 and self._discretisation.model.turns):
             return None, no_work(self._discretisation)
         last = self._steps[-2]
         stage = self._discretisation.model.stages[step.stage]
