@@ -141,12 +141,14 @@ def _turn(motions: FloatArray, points: FloatArray, nodes: IntArray) -> FreeTurn 
 
     A point c at rest, from the nodes' centre in their sizes, has t + ω × c = 0 in every motion.
     """
+    _, sizes, axes = np.linalg.svd(motions[:, 3:], full_matrices=False)
+    if len(motions) > len(sizes) or sizes.min() < 1e-6:
+        return None  # a translation is among them
     t, ω = motions[:, :3].ravel(), _cross(motions[:, 3:]).reshape(-1, 3)
     c = np.linalg.lstsq(ω, -t, rcond=1e-9)[0]
     if np.abs(ω @ c + t).max() > 1e-9:
         return None
     centre, size = points[nodes].mean(axis=0), float(np.ptp(points[nodes], axis=0).max())
-    axes = np.linalg.svd(motions[:, 3:], full_matrices=False)[2]
     return FreeTurn(nodes, centre + size * c, axes)
 
 

@@ -265,7 +265,20 @@ class Path:
         }
 
     def save(self, file: str | PathLike[str]) -> None:
-        """Write every step as VTU beside a PVD file that ParaView opens."""
+        """Write the path: a whole folder, or a file that ParaView opens.
+
+        Parameters
+        ----------
+        file : path
+            With a slash at its end, or of a folder: the folder gets `history.csv`, `summary.json`, shapes, critical
+            points and pictures, as `magshell run --out` writes them, and `path.pickle`, from which
+            `magshell.results.read` reads the path back. Any other name: every step as VTU beside a PVD file.
+
+        Raises
+        ------
+        InputError
+            Files of something else would be replaced, or the model has a function that cannot be pickled.
+        """
         drawing("save_path")(self, file)
 
     def export(self, file: str | PathLike[str], step: int = -1) -> None:
