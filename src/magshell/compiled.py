@@ -7,6 +7,7 @@ import inspect
 import os
 import pathlib
 import sys
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, TypeVar
 
@@ -26,6 +27,8 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 # Sums may be reordered and fused (vector instructions), but NaN and infinity keep their meaning.
 _LAW_OPTIONS = {"fastmath": {"reassoc", "contract", "nsz", "arcp"}, "error_model": "numpy"}
 _OPTIONS = _LAW_OPTIONS | {"no_cfunc_wrapper": True}  # nobody calls kernels from C
+# Threads compile one after the other: of a law that two have compiled, the code of the first would be freed.
+_one_thread = threading.RLock()
 
 
 def user_cache() -> pathlib.Path | None:
@@ -81,7 +84,9 @@ class Kernel(_Kept):
 
     def __call__(self, *arguments: Any) -> Any:
         if self._compiled is None:
-            with self._one_process():
+            with _one_thread, self._one_process():
+                if self._compiled is not None:
+                    return self._compiled(*arguments)
                 dispatcher = numba.njit(**_OPTIONS, nogil=True)(self.py_func)
                 dispatcher._cache = self._store()
                 self._compiled = dispatcher
@@ -119,18 +124,23 @@ class Callback(_Kept):
         kinds = {"p": numba.types.CPointer(numba.float64), "d": numba.float64}
         self._signature = tuple(kinds[letter] for letter in signature), numba.float64
         self.shown = f"the law {owner.__name__}"
-        self._compiled: Any = None  # the code lives as long as this object
+        self._compiled: Any = None
 
     @property
     def address(self) -> int:
         """Address of the machine code in this process; the first use compiles it or reads it from the cache."""
-        if self._compiled is None:
-            with self._one_process():
-                made: Any = CFunc(self._function, self._signature, locals={}, options=dict(_LAW_OPTIONS))
-                made._cache = self._store()
-                made.compile()
-                self._compiled = made
-        return int(self._compiled.address)
+        with _one_thread:
+            if self._compiled is None:
+                self._compiled = self._made()
+            return int(self._compiled.address)
+
+    def _made(self) -> Any:
+        """The machine code, which the addresses that were given away need as long as this object lives."""
+        with self._one_process():
+            made: Any = CFunc(self._function, self._signature, locals={}, options=dict(_LAW_OPTIONS))
+            made._cache = self._store()
+            made.compile()
+            return made
 
     def _store(self) -> Store:
         folder = _cache_folder(f"law-{self._owner.__module__}.{self._owner.__name__}", *self._sources)

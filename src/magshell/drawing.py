@@ -16,7 +16,7 @@ HOMES = {
     "path_html": "magshell.output.notebook",
     "buckling_html": "magshell.output.notebook",
     "problem_html": "magshell.problem.report",
-    "save_path": "magshell.output.vtu",
+    "save_path": "magshell.output.saved",
     "export": "magshell.output.solid",
     "table": "magshell.output.history",
     "write_page": "magshell.output.page",

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from magshell.errors import InputError
 from magshell.files import first_line, naming, refuse_somebodys, refuse_to_replace, write_atomically
-from magshell.output import checkpoint, step_checks
+from magshell.output import checkpoint, saved, step_checks
 from magshell.output.checkpoint import CheckpointWriter, Origin
 from magshell.output.critical import CriticalWriter
 from magshell.output.history import HistoryWriter
@@ -43,31 +43,40 @@ class Results:
 
     Attributes
     ----------
-    problem : Problem
+    problem : Problem or None
+        None: the path was saved by `Path.save`; its model is `path.model`.
     path : Path
         All converged steps; `magshell.resume` goes on with it.
     notes : list of str
         Why going on would not give the same bits as the run so far.
     """
 
-    problem: Problem
+    problem: Problem | None
     path: Path
     notes: list[str]
 
+    @property
+    def title(self) -> str:
+        """That of the problem; nothing without one."""
+        return "" if self.problem is None else self.problem.title
+
     def __repr__(self) -> str:
-        return f"Results('{self.problem.title}', {self.path!r})"
+        return f"Results('{self.title}', {self.path!r})"
 
     def _repr_html_(self) -> str:
         return self.path._repr_html_()
 
 
-def read(directory: str | os.PathLike[str]) -> Results:
+def read(directory: str | os.PathLike[str], own: bool = False) -> Results:
     """Read a results folder, also while a run writes into it.
 
     Parameters
     ----------
     directory : path
-        As `magshell run --out` made it.
+        As `magshell run --out` or `Path.save` made it.
+    own : bool
+        Whether it is your own. What `Path.save` has made is a pickle, which may run any program when it is opened; it
+        is read if you say so. Folders of runs need no trust.
 
     Raises
     ------
@@ -76,6 +85,13 @@ def read(directory: str | os.PathLike[str]) -> Results:
         names the file and says what to do.
     """
     folder = pathlib.Path(directory)
+    if saved.is_saved(folder):
+        if not own:
+            raise InputError(
+                f"{folder}: was saved in Python, and its {saved.NAME} may run any program when it is opened. If you "
+                f"saved it yourself: ms.results.read({str(directory)!r}, own=True)"
+            )
+        return Results(None, *saved.read_saved(folder))
     files = checkpoint.step_files(folder)
     require_no_sweep(folder)
     if not (folder / PROBLEM).is_file():

@@ -23,8 +23,9 @@ def plate():
 
 
 def model(mesh, *supports):
+    """Without a field, which would hold rotations."""
     shell = ms.Shell(mesh, 0.1, example(MATERIAL), ms.remanence.constant((1.0, 0.0, 0.0)))
-    return ms.Model(shell, supports, ms.UniformField((0.0, 0.0, 1.0)))
+    return ms.Model(shell, supports, loads=[ms.Traction(None, (0.0, 0.0, 1.0))])
 
 
 CASES = {

@@ -9,7 +9,7 @@ import pyvista
 from magshell.errors import InputError
 from magshell.evaluation.converged import converged
 from magshell.evaluation.outputs import OUTPUTS, chosen, find
-from magshell.output.vtu import VtuWriter, save_path
+from magshell.output.vtu import VtuWriter, save_series
 
 QUADRATIC_QUAD = int(pyvista.CellType.QUADRATIC_QUAD)
 
@@ -48,7 +48,7 @@ def test_series_has_the_load_factor_as_time(path, written):
 def test_times_rise(path, tmp_path, stages, loads, times):
     for step, stage, load in zip(path.steps, stages, loads, strict=True):
         step.stage, step.load_factor = stage, load
-    save_path(path, tmp_path / "tube.pvd")
+    save_series(path, tmp_path / "tube.pvd")
     assert list(pyvista.get_reader(str(tmp_path / "tube.pvd")).time_values) == times
 
 
@@ -127,8 +127,8 @@ def test_new_run_replaces_an_old_longer_one(path, written):
 
 
 def test_save_of_a_whole_path_keeps_series_apart(path, tmp_path):
-    save_path(path, tmp_path / "a & b.pvd")
-    save_path(path, tmp_path / "other.pvd")
+    save_series(path, tmp_path / "a & b.pvd")
+    save_series(path, tmp_path / "other.pvd")
     for name in ("a & b", "other"):
         reader = pyvista.get_reader(str(tmp_path / f"{name}.pvd"))
         reader.set_active_time_value(1.0)

@@ -70,9 +70,10 @@ def run(given: argparse.Namespace) -> int:
         if not directory.is_dir():
             raise InputError(f"--resume {directory}: is not a folder; name one that `magshell run --out` made")
         if not os.path.lexists(directory / "problem.toml"):
-            raise InputError(
-                f"--resume {directory}: is not a results folder; one that `magshell run --out` made has a problem.toml"
-            )
+            found = "has a path.pickle, which goes on in Python: ms.resume(ms.results.read(…, own=True).path)"
+            if not (directory / "path.pickle").is_file():
+                found = "is not a results folder; one that `magshell run --out` made has a problem.toml"
+            raise InputError(f"--resume {directory}: {found}")
         if not os.access(directory, os.W_OK | os.X_OK):
             raise InputError(f"--resume {directory}: is not writable; copy the folder and go on in the copy")
     elif given.problem is None:
@@ -118,7 +119,8 @@ def _resumed(directory: pathlib.Path) -> int:
         return _new(load(directory / results.PROBLEM), directory)
     found = results.read(directory)
     out, path = console(), found.path
-    say(out, found.problem.title)
+    assert found.problem is not None
+    say(out, found.title)
     if path.converged and _is_complete(directory):
         say(out, f"this run is finished: all {len(path.steps) - 1} steps and their files are in {directory}")
         return SOLVED

@@ -42,7 +42,7 @@ def run(given: argparse.Namespace) -> int:
     file = pathlib.Path(given.out or pathlib.Path(given.directory) / "view.html")
     shown, last = len(shown_steps(found.path)), len(found.path.steps) - 1
     with bar(out, "collecting the outputs of every step") as advance:
-        write_page(found.path, file, found.problem.title, given.color, advance=advance)
+        write_page(found.path, file, found.title, given.color, advance=advance)
     say(out, f"page: {file} ({file.stat().st_size / 1e6:.2g} MB, {last} steps); open it in a browser")
     if shown <= last:
         text = f"shows {shown} of the steps 0 to {last}, spread evenly: all would be too much for a browser"

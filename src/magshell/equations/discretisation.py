@@ -51,12 +51,15 @@ class Assembly(NamedTuple):
         that of the mesh node.
     relative : dict of str to float
         Residual by kind of unknown over the elements' internal and magnetic forces and the loads of that kind.
+    energy : ndarray, shape (elements, 2)
+        Elastic and magnetic, J.
     """
 
     matrix: sp.csc_array | None
     right_side: FloatArray
     residual: FloatArray
     relative: dict[str, float]
+    energy: FloatArray
 
     @property
     def worst(self) -> tuple[str, float]:
@@ -205,7 +208,8 @@ class Discretisation:
         squares = _sum(part.scale for part in parts)
         inner = max(part.inner for part in parts)
         matrix = self._insertion.tangent() if tangent else None
-        return Assembly(matrix, right_side, residual, self._relative(residual, squares, inner))
+        energy = _sum(part.energy for part in parts if part.energy is not None)
+        return Assembly(matrix, right_side, residual, self._relative(residual, squares, inner), energy)
 
     def from_nodes(self, instant: Instant) -> FloatArray:
         """Residual (rows, 11) of what acts at the nodes: loads, springs and magnets of rigid bodies."""

@@ -88,8 +88,10 @@ class ShellTerm:
     ) -> Contribution:
         """See `Term`."""
         field = self.field.at(instant.state, instant.loading, second=insertion is not None)
-        self._evaluated = instant
-        return self._evaluate(instant, field, weights, insertion, imposed)
+        found = self._evaluate(instant, field, weights, insertion, imposed)
+        assert found.energy is not None
+        found.energy[:, MAGNETIC] -= self.field.half_energy(instant.state, instant.loading)
+        return found
 
     def _evaluate(
         self,
@@ -100,7 +102,8 @@ class ShellTerm:
         imposed: FloatArray | None,
     ) -> Contribution:
         """The same in a given field."""
-        filled, tangent = self._filled, insertion is not None
+        tangent = insertion is not None
+        filled = self._filled if tangent else self._apart()
         filled.scale[:], filled.enhancement_residual[:] = 0.0, 0.0
         mixed = instant.prediction is not None
         request = Request(self.body.laws, field, mixed, tangent)
@@ -116,7 +119,13 @@ class ShellTerm:
         residual = self._at_nodes(filled.r[0])
         condensed = self._at_nodes(filled.r[1]) if tangent else residual
         scale, inner = filled.scale.sum(axis=1), float(np.sqrt(filled.enhancement_residual[0]))
-        return Contribution(residual, condensed, scale, inner)
+        return Contribution(residual, condensed, scale, inner, filled.energy.copy() if tangent else filled.energy)
+
+    def _apart(self) -> loops.Filled:
+        """Arrays for a residual alone: it can be evaluated while another thread makes tangents of the same term."""
+        kept = self._filled
+        made = {name: np.zeros_like(getattr(kept, name)) for name in ("K", "energy", "scale", "enhancement_residual")}
+        return kept._replace(r=np.zeros_like(kept.r[:1]), **made)
 
     def _at_nodes(self, forces: FloatArray) -> FloatArray:
         """Forces (elements, values), summed at the nodes, in their frames."""
@@ -136,13 +145,8 @@ class ShellTerm:
 
     def energy(self, instant: Instant) -> FloatArray:
         """Elastic and magnetic energy of each element (elements, 2), J."""
-        self.evaluate(instant, STATIC, None, None)
-        return self.evaluated_energy()
-
-    def evaluated_energy(self) -> FloatArray:
-        """The same at the instant that was evaluated last."""
-        energy = self._filled.energy.copy()
-        energy[:, MAGNETIC] -= self.field.half_energy(self._evaluated.state, self._evaluated.loading)
+        energy = self.evaluate(instant, STATIC, None, None).energy
+        assert energy is not None
         return energy
 
     def load_rate(self, instant: Instant, rate: Loading) -> FloatArray:

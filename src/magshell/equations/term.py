@@ -27,12 +27,15 @@ class Contribution(NamedTuple):
         Sums of squares of the forces that the residual is made of, of u, w, φ, ω and s.
     inner : float
         Norm of the residual of the unknowns that the term owns.
+    energy : ndarray, shape (elements, 2), or None
+        Elastic and magnetic energy of each element, J; None: the term has no elements.
     """
 
     residual: FloatArray
     condensed: FloatArray
     scale: FloatArray
     inner: float
+    energy: FloatArray | None = None
 
 
 class Term(Protocol):

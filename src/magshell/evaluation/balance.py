@@ -162,6 +162,9 @@ def balance(discretisation: Discretisation, state: State, loading: Loading, resi
     forces, torques = force_sum + load_sum + field.force, moment_sum + load_moment_sum + field.torque
     for one in discretisation.model.shell.repeated:
         forces, torques = one.of_the_whole(forces, torques)
+    if discretisation.model.turns:  # forces and torques vanish where such a body has turned into the field
+        largest = _largest_torque(discretisation, state, loading)
+        force_scale, moment_scale = force_scale + largest / discretisation.mesh.size, moment_scale + largest
     return Balance(
         force_sum,
         moment_sum,
@@ -173,6 +176,16 @@ def balance(discretisation: Discretisation, state: State, loading: Loading, resi
         force_scale,
         moment_scale,
     )
+
+
+def _largest_torque(discretisation: Discretisation, state: State, loading: Loading) -> float:
+    """Of the field on the magnets as they are, were they across it, N m."""
+    reference, model = discretisation.reference, discretisation.model
+    field = discretisation.shell.field.at(state, loading, second=False).flux_density
+    moments = np.linalg.norm(reference.remanence, axis=-1) * reference.geometry.volume
+    of_shell = (moments * np.linalg.norm(field, axis=-1)).sum() / model.coupling.vacuum_permeability
+    of_bodies = sum(float(np.linalg.norm(body.moment)) for body in model.shell.rigid) * model.largest_field
+    return float(of_shell) + of_bodies
 
 
 def _sum_of_magnitudes(vectors: FloatArray) -> float:

@@ -53,21 +53,15 @@ class Converged:
         self.discretisation, self.state, self.loading = discretisation, state, loading
         self.mesh = discretisation.mesh
 
-    @property
+    @cached_property
     def assembly(self) -> Assembly:
         """The residual: at held components the reactions."""
-        return self._evaluated[0]
+        return self.discretisation.assemble(Instant(self.state, self.loading), tangent=False)
 
     @property
     def energies(self) -> FloatArray:
         """Elastic and magnetic energy of each element (elements, 2), J; the couple of the field has none."""
-        return self._evaluated[1]
-
-    @cached_property
-    def _evaluated(self) -> tuple[Assembly, FloatArray]:
-        """Residual and energies, of one pass over the elements."""
-        assembly = self.discretisation.assemble(Instant(self.state, self.loading), tangent=False)
-        return assembly, self.discretisation.shell.evaluated_energy()
+        return self.assembly.energy
 
     @cached_property
     def support_forces(self) -> FloatArray:

@@ -14,6 +14,7 @@ import scipy.sparse as sp
 
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.compiled import Kernel
+from magshell.linalg.vectors import dot, norm
 
 MOST_ITERATIONS, EIGENVALUE_TOLERANCE = 30, 1e-6
 
@@ -114,12 +115,12 @@ class ScaledFactors:
     def smallest_eigenpair(self) -> tuple[float, FloatArray]:
         """See `Factorisation`. By inverse iteration, from a random vector that is always the same."""
         vector = np.random.default_rng(0).normal(size=self.scale.size)
-        vector /= np.linalg.norm(vector)
+        vector /= norm(vector)
         inverse = 0.0
         for _ in range(MOST_ITERATIONS):
             solution = self.solve_scaled(vector)
-            last, inverse = inverse, float(vector @ solution)
-            vector = solution / np.linalg.norm(solution)
+            last, inverse = inverse, dot(vector, solution)
+            vector = solution / norm(solution)
             if abs(inverse - last) <= EIGENVALUE_TOLERANCE * abs(inverse):
                 break
         return 1.0 / inverse if inverse else np.inf, np.asarray(self.scale * vector)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import threading
 from functools import cache
 from typing import Any
@@ -40,7 +41,7 @@ class _OneThread:
             if not self._wanted:
                 self._before = [library.get_num_threads() for library in _libraries()]
                 for library in _libraries():
-                    library.set_num_threads(1)
+                    _set(library, 1)
             self._wanted += 1
 
     def __exit__(self, *error: object) -> None:
@@ -48,8 +49,31 @@ class _OneThread:
             self._wanted -= 1
             if not self._wanted:
                 for library, number in zip(_libraries(), self._before, strict=True):
-                    library.set_num_threads(number)
+                    _set(library, number)
+                    _let_go(library)
+
+    def forget(self) -> None:
+        """In a process that was forked: the threads of its parent are not here, whatever they wanted."""
+        wanted, self._lock, self._wanted = self._wanted, threading.Lock(), 0
+        if wanted:
+            for library, number in zip(_libraries(), self._before, strict=True):
+                _set(library, number)
+                _let_go(library)
 
 
-#: With it BLAS computes with the thread that calls it: fronts are small, and sums keep their order.
+def _set(library: Any, number: int) -> None:
+    """Set the threads of a library, from whichever thread this is."""
+    _let_go(library)
+    library.set_num_threads(number)
+
+
+def _let_go(library: Any) -> None:
+    """From version 3.8 on, threadpoolctl listens to the first thread that sets a number, until told otherwise."""
+    if hasattr(library, "clear_controlling_thread"):
+        library.clear_controlling_thread(force=True)
+
+
+#: With it BLAS computes with the thread that calls it, so that sums keep their order.
 one_blas_thread = _OneThread()
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=one_blas_thread.forget)

@@ -31,7 +31,7 @@ from magshell.model.loads.mass import Mass, whole_mass
 from magshell.model.named_supports import NamedSupport, named_supports
 from magshell.model.parts import REST, Part
 from magshell.model.places import Places
-from magshell.model.rigid import check_supported
+from magshell.model.rigid import FreeTurn, direction, free_turns
 from magshell.model.rows import Rows, rows_of
 from magshell.model.shell import Shell
 from magshell.model.stages import Stage
@@ -85,6 +85,8 @@ class Model:
     probe_nodes : mapping of str to int
     named_supports : tuple of NamedSupport
         The supports by the names of their reactions.
+    turns : tuple of FreeTurn
+        What supports let turn and the field alone holds, as a compass needle.
 
     Raises
     ------
@@ -109,6 +111,7 @@ class Model:
     elastic: tuple[Anchored, ...] = dataclasses.field(init=False, repr=False)
     probe_nodes: Mapping[str, int] = dataclasses.field(init=False, repr=False)
     named_supports: tuple[NamedSupport, ...] = dataclasses.field(init=False, repr=False)
+    turns: tuple[FreeTurn, ...] = dataclasses.field(init=False, repr=False)
     _ends: tuple[Amounts, ...] = dataclasses.field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -142,7 +145,9 @@ class Model:
         put(self, "probe_nodes", MappingProxyType(nodes))
         put(self, "_ends", self._amounts_at_the_ends())
         self._check_targets()
-        check_supported(places, self.rows.normals[: places.number], constraints, self.elastic)
+        normals, turned = self.rows.normals[: places.number], self._is_turned_from_the_start
+        put(self, "turns", free_turns(places, normals, constraints, self.elastic, turned))
+        self._check_turns()
         check_linkage(self.shell, self.rows, self.constraints, self.elastic, hinge_springs(self.shell, self.rows))
         self._check_the_micro_rotation_matters()
         self._check_something_loads()
@@ -176,6 +181,25 @@ class Model:
         estimate; to know the error, solve on a mesh with elements of half the size.
         """
         return expected_error(self)
+
+    @property
+    def _is_turned_from_the_start(self) -> bool:
+        """Whether a field acts on magnets in the first stage."""
+        magnetised = self.shell.magnetised or any(np.any(body.moment) for body in self.shell.rigid)
+        return magnetised and bool(np.any(self._ends[1].drives)) and self.largest_field > 0.0
+
+    def _check_turns(self) -> None:
+        """Refuse rotations about a uniform field, which it does not resist."""
+        for number in range(len(self.stages)) if self.turns and isinstance(self.field, UniformField) else ():
+            B = self.course(number).at(1.0).flux_density
+            along = max(float(np.linalg.norm(turn.axes @ B)) for turn in self.turns)
+            if np.any(B) and along > (1.0 - 1e-9) * np.linalg.norm(B):
+                at_the_end = f" at the end of stage {number + 1}" if len(self.stages) > 1 else ""
+                raise InputError(
+                    f"supports: the body can turn about {direction(B)}, the direction of the field{at_the_end}, "
+                    "and the field does not resist that. Hold this rotation by a support or a spring; the field holds "
+                    "the others"
+                )
 
     def _check_targets(self) -> None:
         for stage in self.stages:

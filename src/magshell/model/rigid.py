@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,6 +14,24 @@ from magshell.model.elastic import Elastic
 from magshell.model.images import Images
 from magshell.model.places import Places
 from magshell.shell.state import State
+
+
+class FreeTurn(NamedTuple):
+    """A part that can turn about a point.
+
+    Attributes
+    ----------
+    places : ndarray, shape (n,)
+        Its nodes and rigid bodies.
+    centre : ndarray, shape (3,)
+        A point at rest, m.
+    axes : ndarray, shape (1 to 3, 3)
+        Orthonormal, those about which it can turn.
+    """
+
+    places: IntArray
+    centre: FloatArray
+    axes: FloatArray
 
 
 def free_motions(
@@ -93,13 +112,28 @@ def _cross(vectors: FloatArray) -> FloatArray:
     return np.stack([np.stack(row, axis=-1) for row in ((zero, -z, y), (z, zero, -x), (-y, x, zero))], axis=-2)
 
 
-def check_supported(
-    places: Places, normals: FloatArray, constraints: Constraints, springs: Sequence[Elastic] = ()
-) -> None:
-    """Raise an InputError that names the free rigid motion of a part that can still move.
+def free_turns(
+    places: Places, normals: FloatArray, constraints: Constraints, springs: Sequence[Elastic], turned: bool
+) -> tuple[FreeTurn, ...]:
+    """The parts that can still turn about a point, if something turns them.
 
-    `normals` are those of the places (places, 3), zero for rigid bodies.
+    Parameters
+    ----------
+    places : Places
+    normals : ndarray, shape (places, 3)
+        Zero for rigid bodies.
+    constraints : Constraints
+    springs : sequence of Elastic
+    turned : bool
+        Whether a field turns bodies from the start.
+
+    Raises
+    ------
+    InputError
+        A part can move otherwise, or turn and nothing turns it; the message names the free motion.
     """
+    turns = []
+    turned = turned and not places.jumps  # which would turn with the cell
     mesh, owner, points = places.mesh, places.owner, places.points
     jumps = np.arange(places.number - len(places.jumps), places.number)
     parts = _parts(places, owner)
@@ -110,6 +144,9 @@ def check_supported(
         motions = free_motions(points, normals, nodes, constraints, springs, places)
         if len(motions) == 0:
             continue
+        if turned and (turn := _turn(motions, points, nodes)) is not None:
+            turns.append(turn)
+            continue
         which = "the body" if len(parts) == 1 else f"part {number + 1} of {len(parts)} (element {elements[0]} …)"
         if len(motions) == 6:
             raise InputError(
@@ -119,6 +156,23 @@ def check_supported(
         raise InputError(
             f"supports: {which} can still move as a rigid body: {_describe(motions)}. Add a support against it"
         )
+    return tuple(turns)
+
+
+def _turn(motions: FloatArray, points: FloatArray, nodes: IntArray) -> FreeTurn | None:
+    """Free motions (n, 6) as rotations about a point; None: they are not.
+
+    A point c at rest, from the nodes' centre in their sizes, has t + ω × c = 0 in every motion.
+    """
+    _, sizes, axes = np.linalg.svd(motions[:, 3:], full_matrices=False)
+    if len(motions) > len(sizes) or sizes.min() < 1e-6:
+        return None  # a translation is among them
+    t, ω = motions[:, :3].ravel(), _cross(motions[:, 3:]).reshape(-1, 3)
+    c = np.linalg.lstsq(ω, -t, rcond=1e-9)[0]
+    if np.abs(ω @ c + t).max() > 1e-9:
+        return None
+    centre, size = points[nodes].mean(axis=0), float(np.ptp(points[nodes], axis=0).max())
+    return FreeTurn(nodes, centre + size * c, axes)
 
 
 def _parts(places: Places, owner: IntArray) -> list[IntArray]:
@@ -145,13 +199,14 @@ def _describe(motions: FloatArray) -> str:
     translations = np.linalg.svd(motions[:, 3:].T)[2] @ motions
     for motion in translations:
         if np.linalg.norm(motion[3:]) < 1e-6 * np.linalg.norm(motion):
-            named.append("translation along " + _direction(motion[:3]))
+            named.append("translation along " + direction(motion[:3]))
         else:
-            named.append("rotation about " + _direction(motion[3:]))
+            named.append("rotation about " + direction(motion[3:]))
     return " and ".join(sorted(named, reverse=True))
 
 
-def _direction(vector: FloatArray) -> str:
+def direction(vector: FloatArray) -> str:
+    """A direction in words: along an axis, or three numbers."""
     unit = vector / np.linalg.norm(vector)
     axis = int(np.argmax(np.round(np.abs(unit), 9)))
     if abs(unit[axis]) > 1.0 - 1e-9:

@@ -117,7 +117,7 @@ def _is_whole(file: pathlib.Path) -> bool:
         return False
 
 
-def save_path(path: Path, file: str | os.PathLike[str]) -> None:
+def save_series(path: Path, file: str | os.PathLike[str]) -> None:
     """Write a whole path: `NAME.pvd` with its step files in the folder `NAME` beside it.
 
     Parameters

@@ -20,6 +20,7 @@ from magshell.model.doubts.loads import strength
 from magshell.model.doubts.mesh_error import in_words
 from magshell.model.elastic import ElasticSupport
 from magshell.model.repeated import Periodic
+from magshell.model.rigid import direction
 from magshell.model.support import Support
 from magshell.model.supports import SymmetryPlane
 from magshell.model.words import offset_of, span
@@ -233,6 +234,9 @@ def _supports(problem: Problem, figures: Whole) -> Iterator[tuple[str, str]]:
         mirrored = isinstance(support, SymmetryPlane)
         half = symmetry_report.other_half(problem, next(planes)) if mirrored else ""
         yield support.group, f"{support.words}, {nodes}{_reaction(support, figures.extent)}{half}"
+    for turn in problem.model.turns:
+        axes = " and ".join(direction(axis) for axis in turn.axes)
+        yield "held by the field", f"rotation about {axes}; the path begins where the body has turned into the field"
 
 
 def _springs(problem: Problem, figures: Whole) -> Iterator[tuple[str, str]]:

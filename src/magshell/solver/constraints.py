@@ -18,6 +18,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from magshell.arrays import FloatArray
+from magshell.linalg.vectors import dot
 from magshell.shell.state import State
 
 # ψ: the whole of a stage counts like a displacement of all nodes by a tenth of the body's size.
@@ -35,7 +36,7 @@ class Metric(NamedTuple):
 
     def product(self, first: tuple[FloatArray, float], second: tuple[FloatArray, float]) -> float:
         """Of two directions."""
-        return float(self.scale * np.vdot(first[0], second[0]) + LOAD_WEIGHT**2 * first[1] * second[1])
+        return float(self.scale * dot(first[0], second[0]) + LOAD_WEIGHT**2 * first[1] * second[1])
 
     def norm(self, u: FloatArray, load: float) -> float:
         """Length of a direction."""

@@ -39,6 +39,8 @@ import scipy.sparse as sp
 from magshell.arrays import FloatArray
 from magshell.linalg import Factorisation, LinearSolver, SingularMatrix
 from magshell.linalg.factorisation import scaled
+from magshell.linalg.threads import one_blas_thread
+from magshell.linalg.vectors import dot, norm
 
 # Guesses beyond those wanted, as complex ones are among them; eigenpairs of the linear problem in a gap.
 SPARE, LOCAL = 6, 6
@@ -176,7 +178,8 @@ class _Search:
         operator = LinearOperator((size, size), matvec=product, dtype=float)
         start = np.random.default_rng(self.searches).normal(size=size)
         try:
-            found: tuple[Any, Any] = eigs(operator, k=min(wanted, size - 2), which="LM", v0=start)
+            with one_blas_thread:
+                found: tuple[Any, Any] = eigs(operator, k=min(wanted, size - 2), which="LM", v0=start)
         except ArpackNoConvergence as partly:
             found = partly.eigenvalues, partly.eigenvectors
         except ArpackError as error:
@@ -207,12 +210,12 @@ class _Search:
             except SingularMatrix as singular:
                 return Eigenpair(s, singular.null_vector)
             ahead = factors.solve(change)
-            step = -float(change @ vector) / float(change @ ahead)
+            step = -dot(change, vector) / dot(change, ahead)
             if not np.isfinite(step):
                 return None
             if abs(step) > CLEAR * abs(s):
                 self.counts[s] = factors.negative_pivots()
-            s, vector = s + step, ahead / np.linalg.norm(ahead / self.scale)
+            s, vector = s + step, ahead / norm(ahead / self.scale)
             size = abs(step / s)
             if size <= TOLERANCE or (size <= ROUND_OFF and size > 0.1 * sizes[-1]):
                 return Eigenpair(s, vector)
@@ -226,12 +229,12 @@ class _Search:
         if pair is None or abs(pair.value) > self.reach:
             return False
         vector = pair.vector / self.scale
-        vector = vector / np.linalg.norm(vector)
+        vector = vector / norm(vector)
         for known in self.found:
             if abs(known.value - pair.value) <= SAME * abs(pair.value):
                 other = known.vector / self.scale
-                vector = vector - other * (vector @ other) / (other @ other)
-        if np.linalg.norm(vector) < APART:
+                vector = vector - other * dot(vector, other) / dot(other, other)
+        if norm(vector) < APART:
             return False
         self.found.append(pair._replace(vector=self.scale * vector))
         self.found.sort(key=lambda one: abs(one.value))

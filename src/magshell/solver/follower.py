@@ -9,19 +9,21 @@ import numpy as np
 
 from magshell.equations.instant import Increment
 from magshell.evaluation.balance import Balance, balance
+from magshell.shell.unknowns import COMPONENTS
 from magshell.solver.attempt import Attempt, next_attempt
 from magshell.solver.constraints import Metric
 from magshell.solver.continuity import check_near, length_along
 from magshell.solver.critical import LIMIT_POINT, CriticalPoint, locate, passed
 from magshell.solver.diagnosis import diagnosis
 from magshell.solver.events import Iteration, Observer
-from magshell.solver.goals import Goal, ProbeGoal, goals_of
+from magshell.solver.goals import Goal, LoadGoal, ProbeGoal, goals_of
 from magshell.solver.newton import Solution, StepFailure, System, Trial, newton
 from magshell.solver.path import Path
 from magshell.solver.starts import Start, start_of
 from magshell.solver.step import Step
 from magshell.solver.step_control import StepControl, StepRules, stagnant
 from magshell.solver.track import Direction, Point, Slope, close_factors, point_at
+from magshell.solver.turning import turned
 from magshell.solver.waypoint import Waypoint
 
 # Failures in a row after which the arc length is held instead.
@@ -74,6 +76,10 @@ class Follower:
 
     def _begin(self, start: Start, goal: Goal) -> None:
         """The first point of a stage, and the size of its first step."""
+        if self._lets_turn(start):
+            self._keep_undeformed(start)
+            self._release(start, goal)
+            return
         point, solution = self._first(start, goal)
         self.track = [point]
         size = BRANCH_STEP if start.mode is not None else self.settings.first_step / abs(point.slope.load)
@@ -82,9 +88,45 @@ class Follower:
         if not self.path.steps:
             self._keep(point, solution, None, [])
 
+    def _lets_turn(self, start: Start) -> bool:
+        """Whether a stage starts from the undeformed state of a body that the field alone holds, as a needle."""
+        return bool(self.path.model.turns) and self.stage == 0 and start.mode is None
+
+    def _keep_undeformed(self, start: Start) -> None:
+        """Without a field every angle is in equilibrium: the first step has no tangent and no slope."""
+        state = start.state
+        trial = Trial(state, 0.0, self.system.predicted(state, 0.0))
+        solution = Solution(trial, self.system.assemble(trial), [0.0], None, None)
+        still = Slope(Increment(np.zeros((len(state.u), COMPONENTS)), np.zeros_like(state.alpha)), 1.0)
+        self._keep(Point(0.0, 0.0, state, still, trial.prediction, None), solution, None, [])
+
+    def _release(self, start: Start, goal: Goal) -> None:
+        """The second step: in the first field, a weak one, the body has turned as a whole (`turning.py`)."""
+        load = self.settings.first_step
+        if isinstance(goal, LoadGoal):
+            load = min(load, 0.5 * goal.wanted)
+        state = turned(self.discretisation, self.system.course.at(load))
+        trial = Trial(state, load, self.system.predicted(state, load))
+        solution = newton(self.system, trial, None, lambda *heard: self._report(trial, *heard))
+        along: Direction = np.zeros_like(state.u), 1.0
+        length = self.metric.norm(solution.trial.state.u, load)
+        point = point_at(self.system, self.metric, solution, None, length, along)
+        if isinstance(goal, ProbeGoal) and goal.slope(point.slope) * (goal.wanted - goal.value(point)) < 0.0:
+            point = point._replace(slope=point.slope.reversed)
+        self.track = [point]
+        self.control = self.control._replace(size=self.settings.first_step / abs(point.slope.load), failures=0)
+        self._head_for(0)
+        self.taken = 1
+        self._keep(point, solution, self._balance(solution), [])
+
     def _resume(self, start: Start, goal: Goal) -> None:
         """The points and the size of the next step where the last step of a stage left them."""
         own = [waypoint for waypoint in self.path.trail if waypoint.step.stage == self.stage]
+        if self._lets_turn(start):
+            own = [waypoint for waypoint in own if waypoint.step.number > 0]
+            if not own:
+                self._release(start, goal)
+                return
         self.track = [self._point(waypoint) for waypoint in own]
         if len(own) < 3 and self.stage > 0:
             self.track.insert(0, self._first(start, goal)[0])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Sequence
 from itertools import pairwise
 
@@ -36,6 +37,7 @@ class History:
         self._rows: list[list[Number]] = []
         self._work: list[Work] = []
         self._last: Acting | None = None
+        self._lock = threading.RLock()
 
     @property
     def columns(self) -> list[str]:
@@ -49,11 +51,12 @@ class History:
 
         Those of the steps before it are evaluated first, as work is summed; what was asked for is kept.
         """
-        for one in [*self._path[len(self._rows) : step.number], step]:
-            if one.number == len(self._rows):
-                self._steps.append(one)
-                self._rows.append(self._evaluated(one))
-        return self._rows[step.number]
+        with self._lock:
+            for one in [*self._path[len(self._rows) : step.number], step]:
+                if one.number == len(self._rows):
+                    self._steps.append(one)
+                    self._rows.append(self._evaluated(one))
+            return self._rows[step.number]
 
     def rows(self, steps: Sequence[Step]) -> list[list[Number]]:
         """Of all steps of the path, from the first."""
@@ -72,7 +75,7 @@ class History:
 
     def _before(self, step: Step) -> tuple[Acting | None, Work]:
         """What acts at the state on the path before a step, and the work up to there."""
-        if self._last is None:
+        if self._last is None or (step.number == 1 and self._discretisation.model.turns):
             return None, no_work(self._discretisation)
         last = self._steps[-2]
         stage = self._discretisation.model.stages[step.stage]

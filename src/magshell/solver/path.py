@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
@@ -92,20 +95,38 @@ class Path:
     cuts: int = 0
     cpu_seconds: float = 0.0
     trail: list[Waypoint] = field(default_factory=list)
+    _solving: threading.Lock = field(default_factory=threading.Lock, init=False, repr=False, compare=False)
 
     def __getstate__(self) -> dict[str, Any]:
         """What a pickle or a copy has: all but the equations, whose laws have addresses in this process only."""
-        left_out = ("discretisation", "history")
+        left_out = ("discretisation", "history", "_solving")
         return {name: value for name, value in self.__dict__.items() if name not in left_out}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state, discretisation=Discretisation(state["model"], nested_dissection))
+        self._solving = threading.Lock()
 
     def __repr__(self) -> str:
         return f"Path({max(len(self.steps) - 1, 0)} steps, {self.discretisation.dofs} unknowns: {self.reason})"
 
     def _repr_html_(self) -> str:
         return str(drawing("path_html")(self))
+
+    @contextmanager
+    def solving(self) -> Iterator[None]:
+        """While this lasts nobody else can lengthen the path.
+
+        Raises
+        ------
+        InputError
+            Somebody does already.
+        """
+        if not self._solving.acquire(blocking=False):
+            raise InputError("this path is being solved already, by another thread or the one that calls an observer")
+        try:
+            yield
+        finally:
+            self._solving.release()
 
     def add(self, waypoint: Waypoint) -> None:
         """Lengthen the path by a converged step."""
@@ -244,7 +265,20 @@ class Path:
         }
 
     def save(self, file: str | PathLike[str]) -> None:
-        """Write every step as VTU beside a PVD file that ParaView opens."""
+        """Write the path: a whole folder, or a file that ParaView opens.
+
+        Parameters
+        ----------
+        file : path
+            With a slash at its end, or of a folder: the folder gets `history.csv`, `summary.json`, shapes, critical
+            points and pictures, as `magshell run --out` writes them, and `path.pickle`, from which
+            `magshell.results.read` reads the path back. Any other name: every step as VTU beside a PVD file.
+
+        Raises
+        ------
+        InputError
+            Files of something else would be replaced, or the model has a function that cannot be pickled.
+        """
         drawing("save_path")(self, file)
 
     def export(self, file: str | PathLike[str], step: int = -1) -> None:

@@ -65,7 +65,14 @@ def resume(path: Path, observers: Sequence[Observer] = ()) -> Path:
     ------
     SolveError
         As by `solve`.
+    InputError
+        Another thread goes on with the path.
     """
+    with path.solving():
+        return _resumed(path, observers)
+
+
+def _resumed(path: Path, observers: Sequence[Observer]) -> Path:
     model, discretisation, settings = path.model, path.discretisation, path.settings
     linear_solver = make_solver(settings.linear_solver)
     logger.info("%d unknowns, linear solver: %s", discretisation.dofs, linear_solver.name)
