@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from itertools import pairwise
 
 import numpy as np
@@ -27,6 +28,20 @@ def two_strips(upper: float, stage: ms.Stage, coupling: object | None = None) ->
     probes = {"lower": (LENGTH, 0.0, 0.0), "tip": (LENGTH, 0.0, GAP)}
     law = coupling or ms.MicroRotationEnergy()
     return ms.Model(shell, [ms.Clamp("held", name="held")], ms.SelfField(), law, probes, stages=[stage])
+
+
+def test_soft_sheets_of_strong_remanence_are_told(caplog) -> None:
+    with caplog.at_level(logging.WARNING):
+        mild = two_strips(J, ms.Stage())
+    assert not caplog.text
+    assert not [doubt for doubt in mild.doubts() if "self_field" in doubt]
+    strong = ms.Shell(mild.shell.mesh, 0.5e-3, mild.shell.material, ms.remanence.constant((0.0, 0.0, 0.1)))
+    with caplog.at_level(logging.WARNING):
+        model = ms.Model(strong, mild.supports, ms.SelfField())
+    ratio = 0.1**2 / (3.0 * 4e-7 * np.pi * 150e3)
+    (doubt,) = [doubt for doubt in model.doubts() if "self_field" in doubt]
+    assert f"is {ratio:.2g}: touching elements strain each other" in doubt
+    assert doubt in caplog.text
 
 
 class Residuals(ms.Observer):

@@ -18,7 +18,7 @@ from magshell.magnetics.deformation_gradient_energy import DeformationGradientEn
 from magshell.magnetics.fields import Field, FieldUnknown, UniformField
 from magshell.magnetics.fields.own import has_own
 from magshell.magnetics.micropolar_couple import MicropolarCouple
-from magshell.model import coupling_limit, doubts, symmetry
+from magshell.model import coupling_limit, doubts, own_field_limit, symmetry
 from magshell.model.constraints import Constraints, resolve
 from magshell.model.course import Amounts, Course, Loading
 from magshell.model.doubts.mesh_error import expected_error
@@ -155,6 +155,8 @@ class Model:
             symmetry.logger.warning("%s", fault)
         for fault in coupling_limit.reached(self.shell, self.coupling, self.largest_field):
             coupling_limit.logger.warning("%s", fault)
+        for fault in own_field_limit.reached(self.shell, self.field):
+            own_field_limit.logger.warning("%s", fault)
 
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "probe_nodes": dict(self.probe_nodes)}

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from magshell.errors import InputError, NothingLoads
-from magshell.model import coupling_limit, symmetry
+from magshell.model import coupling_limit, own_field_limit, symmetry
 from magshell.problem.alternatives import Setting, Value
 from magshell.problem.building import build
 from magshell.problem.building.material import by_default
@@ -113,7 +113,10 @@ def _cell(number: int, words: str, changes: dict[str, Value], source: Source) ->
         model = build(file, *found).model
     except NothingLoads:
         return replace(cell, undeformed=True)
-    weak = coupling_limit.reached(model.shell, model.coupling, model.largest_field)
+    weak = [
+        *coupling_limit.reached(model.shell, model.coupling, model.largest_field),
+        *own_field_limit.reached(model.shell, model.field),
+    ]
     return replace(cell, doubts=(*symmetry.broken(model), *weak), note=by_default(file))
 
 

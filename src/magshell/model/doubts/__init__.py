@@ -9,7 +9,7 @@ import numpy as np
 from magshell.magnetics.remanence.sampled import averaged
 from magshell.mesh.geometry import centres
 from magshell.mesh.quality import worst
-from magshell.model import coupling_limit, symmetry
+from magshell.model import coupling_limit, own_field_limit, symmetry
 from magshell.model.doubts import loads, parts, rotations, triangles
 from magshell.model.doubts.asked import Asked
 from magshell.model.doubts.figures import Figures, Whole, figures_of
@@ -39,6 +39,7 @@ def _doubts(model: Asked) -> Iterator[str]:
     yield from _of_field(model, figures)
     yield from parts.doubts(shell)
     yield from coupling_limit.reached(shell, model.coupling, model.largest_field)
+    yield from own_field_limit.reached(shell, model.field)
     yield from _of_places(shell)
     yield from loads.doubts(model, loads.strength(model, figures))
     yield from rotations.doubts(model)
