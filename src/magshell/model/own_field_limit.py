@@ -1,7 +1,7 @@
 """Whether the body's own field is so strong that touching elements strain each other.
 
-Elements that touch attract as if they were cut apart there, by stresses of the order B̃²/mu0, which grow as the mesh gets
-finer (`benchmarks/own_field.py`): a strip of its own strains by 0.2 to 0.8 times B̃²/(mu0 E), E about 3 mu.
+Elements that touch attract as if they were cut apart there, by stresses of the order B̃²/mu0 that grow as the mesh gets
+finer (`benchmarks/own_field.py`): a strip alone strains by 0.2 to 0.8 times B̃²/(mu0 E), E about 3 mu.
 """
 
 from __future__ import annotations
@@ -37,6 +37,6 @@ def reached(shell: Shell, field: Field) -> Iterator[str]:
         of_part = f" of region '{where}'" if len(shell.parts) > 1 else ""
         yield (
             f"self_field: B_rem²/(3 mu0 mu){of_part} is {largest:.2g}: touching elements strain each other by some "
-            "tenths of that, more on finer meshes. Trust what separate pieces do to each other, not what bending sheets do to "
-            "themselves; compare two meshes"
+            "tenths of that, more on finer meshes. Trust what separate pieces do to each other, not what bending "
+            "sheets do to themselves; compare two meshes"
         )
