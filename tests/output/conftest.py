@@ -36,6 +36,7 @@ class FakeDiscretisation:
         self.reference = SimpleNamespace(remanence=np.tile([0.0, 0.0, 80e-3], (len(mesh.elements), 4, 2, 1)))
         radial = mesh.points * [0, 1, 1]
         self.normals = radial / np.linalg.norm(radial, axis=1, keepdims=True)
+        self.rows = SimpleNamespace(elements=mesh.elements)
 
 
 class FakeConverged:
@@ -82,7 +83,7 @@ class FakeConverged:
         return 5.0 * np.stack([self.state.u, -self.state.u], axis=2)
 
     reactions = ()
-    body_motions = body_forces = np.zeros((0, 2, 3))
+    body_motions = body_forces = jumps = np.zeros((0, 2, 3))
     magnetic_torque = (0.0, 0.0, 1e-6)
     acting = "known"
 
@@ -120,6 +121,7 @@ class FakePath:
             outputs=("stress", "membrane_force"),
             named_supports=(),
             springs=(),
+            turns=(),
             reactions=(),
             stages=[SimpleNamespace(branch=None)] * 3,
             probe_nodes={name: mesh.node_at(position) for name, position in probes.items()},

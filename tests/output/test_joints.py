@@ -266,7 +266,8 @@ def test_shading_is_flat_across_a_kink():
     """Normals of the surface are those of the elements on both sides."""
     mesh = extruded(FOLD, 1, 1)
     shell = ms.Shell(mesh, THICK, RUBBER)
-    at_rest = SimpleNamespace(displacement=np.zeros_like(mesh.points))
+    whole = SimpleNamespace(model=SimpleNamespace(shell=shell))
+    at_rest = SimpleNamespace(displacement=np.zeros_like(mesh.points), discretisation=whole)
     surface = skin_of(shell).placed(at_rest).surface
     on_kink = np.abs(surface.points - [1.0, 0.5, 0.0])[:, [0, 2]].max(axis=1) < 1e-9
     found = np.unique(np.round(surface.normals[on_kink], 9) + 0.0, axis=0)

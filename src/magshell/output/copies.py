@@ -28,7 +28,10 @@ class Copy(NamedTuple):
 
 def neighbours(reached: Converged) -> list[Copy]:
     """Copies of a repeated part in a state: all other sectors about an axis, the cells next to a cell."""
-    shell, rows = reached.discretisation.model.shell, reached.discretisation.rows
+    shell = reached.discretisation.model.shell
+    if not shell.repeated:
+        return []
+    rows = reached.discretisation.rows
     copies = [Copy(np.eye(3))]
     jumps = iter(rows.points[rows.jumps] + reached.state.u[rows.jumps])
     for one in shell.repeated:
