@@ -44,7 +44,7 @@ def save_path(path: Path, file: str | os.PathLike[str]) -> None:
 
 def is_saved(directory: pathlib.Path) -> bool:
     """Whether a folder holds a saved path."""
-    return first_line(directory / NAME).startswith(FORMAT)
+    return (directory / NAME).is_file() and first_line(directory / NAME).startswith(FORMAT)
 
 
 def save_folder(path: Path, directory: str | os.PathLike[str]) -> None:
