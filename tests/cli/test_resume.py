@@ -110,7 +110,7 @@ def test_goes_on(stopped: Path, finished: Path, no_pictures: None, capsys: pytes
     assert main(["run", "--resume", str(stopped)]) == 0
     shown = capsys.readouterr()
     last = ms.results.read(finished).path.steps[LEFT]
-    assert f"2 steps to {100 * last.load_factor:.4g} %" in shown.out
+    assert f"2 steps up to {100 * last.load_factor:.4g} %" in shown.out
     assert "step 3 " in shown.out
     assert "step 2 " not in shown.out
     assert shown.err == ""

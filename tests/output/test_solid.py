@@ -258,7 +258,7 @@ def test_solid_elements_have_the_volume_of_the_body(which, request, tmp_path):
 
 
 def test_bad_names_and_steps(bent, tmp_path):
-    with pytest.raises(InputError, match=r"\.stl or \.vtu is written here"):
+    with pytest.raises(InputError, match=r"only .stl or .vtu can be written"):
         bent.export(tmp_path / "body.obj")
     with pytest.raises(InputError, match="There is no step 99"):
         bent.export(tmp_path / "body.stl", step=99)

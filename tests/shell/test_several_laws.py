@@ -46,7 +46,7 @@ def evaluated(d, make, state, elements=slice(None)):
     term.place(numbering, d.model.constraints)
     instant = Instant(state._replace(alpha=state.alpha[elements]), d.model.loading(1.0))
     part = term.evaluate(instant, STATIC, insertion, None)
-    return part.residual, part.condensed, insertion.matrix.toarray(), term.energy(instant)
+    return part.residual, part.condensed, insertion.tangent().toarray(), term.energy(instant)
 
 
 def surface_of(d, elements=slice(None)):
