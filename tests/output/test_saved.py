@@ -120,7 +120,7 @@ def test_whose_it_is_must_be_said(folder: Path, capsys: pytest.CaptureFixture[st
 
 def test_files_of_somebody_else(path: ms.Path, tmp_path: Path) -> None:
     (tmp_path / "history.csv").write_text("mine\n")
-    with pytest.raises(InputError, match=r"would lose history\.csv"):
+    with pytest.raises(InputError, match=r"history\.csv would be lost"):
         path.save(tmp_path)
     assert [one.name for one in tmp_path.iterdir()] == ["history.csv"]
 
