@@ -250,6 +250,22 @@ def test_nothing_without_it_and_zero_multiplier():
     assert plain.exact_tangent
 
 
+def test_threads_that_ask_for_different_states():
+    """Another thread asks for its state just after this one has kept its own."""
+    d, _, _ = magnetised((1, 1), (0.0, 0.0, 6e-3))
+    own, here, there = d.shell.field.own, d.undeformed(), bent(d, 40.0)
+    alone = own.at(here).flux_density
+    own.at(there)
+    kept = own._last
+    assert np.abs(kept[1].flux_density - alone).max() > 1e-3 * np.abs(alone).max()
+
+    class Interrupted(type(own)):
+        _last = property(lambda self: kept, lambda self, mine: None)
+
+    own.__class__ = Interrupted
+    np.testing.assert_array_equal(own.at(here).flux_density, alone)
+
+
 def test_too_near_is_refused():
     from magshell.equations.term import FieldLost
 

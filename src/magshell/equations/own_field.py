@@ -100,7 +100,7 @@ class OwnField:
                     f"self_field: the coupling law {type(coupling).__name__} exerts no force where the field varies, "
                     "so its magnetisation is not known; add the force to its rows X, as `pull` does"
                 )
-        self._last: tuple[State, Own] | None = None
+        self._last: tuple[State, Own, FloatArray] | None = None
 
     def at(self, state: State) -> Own:
         """The field in a state, at multiplier 1.
@@ -110,16 +110,22 @@ class OwnField:
         FieldLost
             Parts of the body come so near to each other that their field is not resolved.
         """
-        if self._last is None or self._last[0] is not state:
-            self._last = state, self._summed(state)
-        return self._last[1]
+        return self._of(state)[1]
+
+    def _of(self, state: State) -> tuple[State, Own, FloatArray]:
+        """A state, its field and moments, kept for the next who asks; other threads may ask for other states."""
+        last = self._last
+        if last is None or last[0] is not state:
+            moments = self.moments(state)
+            last = self._last = state, self._summed(state, moments), moments
+        return last
 
     def change(self, state: State, moved: State, size: float) -> Own:
         """How it differs in a state near by, over a size: ∇B at the levels and magnets that move, B where they were.
 
         What B changes by as they move, ∇B δx, is part of the tangent.
         """
-        here, there = self.at(state), self._summed(moved)
+        here, there = self.at(state), self._summed(moved, self.moments(moved))
         change = Own(*((new - old) / size for old, new in zip(here, there, strict=True)))
         levels = (level_positions(self._reference, moved) - level_positions(self._reference, state)) / size
         magnets = (self._magnets.positions(moved) - self._magnets.positions(state)) / size
@@ -133,7 +139,8 @@ class OwnField:
         """-Σ m · B_own (elements,) of the levels whose law has an energy, J: twice the energy of their pairs."""
         made = self._reference.body.levels["coupling"]
         counts = np.array([is_conservative(coupling) for coupling in self._couplings])[made]
-        work = np.sum(self.moments(state) * self.at(state).flux_density, axis=-1)
+        _, own, moments = self._of(state)
+        work = np.sum(moments * own.flux_density, axis=-1)
         return -np.sum(work * counts, axis=(1, 2))
 
     def moments(self, state: State) -> FloatArray:
@@ -150,9 +157,8 @@ class OwnField:
         forces = of_couplings(reference, self._couplings, fields, LocalField(B, slopes))
         return np.asarray(-forces[..., X : X + 3] * reference.body.levels["volume"][..., None])
 
-    def _summed(self, state: State) -> Own:
-        positions, moments = level_positions(self._reference, state), self.moments(state)
-        groups = self._groups(state, positions, moments)
+    def _summed(self, state: State, moments: FloatArray) -> Own:
+        groups = self._groups(state, level_positions(self._reference, state), moments)
         at_few, at_many = (np.zeros((*x.shape[:2], COMPONENTS)) for x in (groups.few, groups.many))
         if np.isfinite(groups.centres).all():
             one, other = add_fields(groups, at_few, at_many)
