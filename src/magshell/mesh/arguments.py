@@ -8,7 +8,7 @@ from numbers import Integral, Real
 
 import numpy as np
 
-from magshell.arrays import FloatArray
+from magshell.arrays import FloatArray, three_finite
 from magshell.errors import InputError
 
 WIDEST = 120.0
@@ -94,10 +94,7 @@ def axes(
 
 def direction(generator: str, name: str, value: Sequence[float]) -> FloatArray:
     """Unit vector (3,)."""
-    try:
-        vector = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        vector = np.zeros(0)
-    if vector.shape != (3,) or not np.isfinite(vector).all() or not vector.any():
+    vector = three_finite(value)
+    if vector is None or not vector.any():
         raise InputError(f"{generator}: {name} = {value!r} is not allowed; it must be three numbers, not all zero.")
     return vector / np.linalg.norm(vector)

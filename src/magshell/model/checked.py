@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from magshell.arrays import FloatArray
+from magshell.arrays import FloatArray, three_finite
 from magshell.errors import InputError
 from magshell.materials import BY_DEFAULT, DEFAULTS, Multiple, own_keys
 
@@ -69,10 +69,7 @@ def three_numbers(where: str, name: str, value: ArrayLike) -> FloatArray:
     InputError
         They are not.
     """
-    try:
-        found = np.array(value, dtype=float)
-    except (TypeError, ValueError):
-        found = np.empty(0)
-    if found.shape != (3,) or not np.all(np.isfinite(found)):
+    found = three_finite(value)
+    if found is None:
         raise InputError(f"{where}: {name} is {value!r}; it needs 3 finite numbers")
     return found

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from magshell.arrays import FloatArray, IntArray
+from magshell.arrays import FloatArray, IntArray, three_finite
 from magshell.errors import InputError
 from magshell.model.loads.distribution import centroid_weights
 from magshell.model.places import Places
@@ -108,11 +108,8 @@ def _point(name: str, supports: Sequence[Support]) -> FloatArray | None:
     for support in supports:
         if support.point is None:
             continue
-        try:
-            point = np.array(support.point, dtype=float)
-        except (TypeError, ValueError):
-            point = np.empty(0)
-        if point.shape != (3,) or not np.all(np.isfinite(point)):
+        point = three_finite(support.point)
+        if point is None:
             raise InputError(f"support on '{support.group}': point is {support.point!r}; it needs 3 finite coordinates")
         points.append(point)
     if any(np.any(point != points[0]) for point in points):

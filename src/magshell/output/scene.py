@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from magshell.arrays import AnyArray, FloatArray
+from magshell.arrays import AnyArray, FloatArray, three_finite
 from magshell.errors import InputError
 from magshell.output.copies import with_copies
 from magshell.output.joints import joints_of
@@ -76,11 +76,8 @@ def axes_from(camera: ArrayLike) -> FloatArray:
     InputError
         Not three finite numbers, or all of them 0.
     """
-    try:
-        towards = np.asarray(camera, dtype=float)
-    except (TypeError, ValueError):
-        towards = np.empty(0)
-    if towards.shape != (3,) or not np.isfinite(towards).all() or not towards.any():
+    towards = three_finite(camera)
+    if towards is None or not towards.any():
         raise InputError(f"camera is {camera!r}; it must be three numbers, the direction from the body to the camera")
     towards = towards / np.linalg.norm(towards)
     steep = abs(towards[2]) > 1.0 - 1e-9

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from magshell.arrays import FloatArray
+from magshell.arrays import FloatArray, three_finite
 from magshell.errors import InputError
 from magshell.magnetics.fields.field import Field, Values
 from magshell.multipliers import amplitudes, numbers
@@ -104,11 +104,8 @@ def vector(value: ArrayLike, where: str) -> FloatArray:
     InputError
         They are not.
     """
-    try:
-        array = np.array(value, dtype=float)
-    except (TypeError, ValueError):
-        array = np.empty(0)
-    if array.shape != (3,) or not np.isfinite(array).all():
+    array = three_finite(value)
+    if array is None:
         raise InputError(f"{where} is {value!r}; it needs three finite numbers")
     array.flags.writeable = False
     return array

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from magshell.arrays import FloatArray
+from magshell.arrays import FloatArray, three_finite
 from magshell.errors import InputError
 from magshell.magnetics.fields.field import Field, Values
 from magshell.multipliers import amplitudes, numbers, spaced
@@ -83,11 +83,8 @@ class UniformField(Field):
         if self.rotation is None:
             return np.zeros(3)
         numbers(self.rotation, "field", "rotation")
-        try:
-            axis = np.array(self.rotation_axis, dtype=float)
-        except (TypeError, ValueError):
-            axis = np.empty(0)
-        if axis.shape != (3,) or not np.all(np.isfinite(axis)) or not np.any(axis):
+        axis = three_finite(self.rotation_axis)
+        if axis is None or not np.any(axis):
             raise InputError(
                 f"field: rotation_axis is {self.rotation_axis!r}; it needs 3 finite components, not all zero"
             )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from magshell.arrays import AnyArray, FloatArray
+from magshell.arrays import AnyArray, FloatArray, three_finite
 from magshell.errors import InputError
 
 if TYPE_CHECKING:
@@ -22,11 +22,8 @@ ON_THE_AXIS = 1e-12
 
 def vector(name: str, value: ArrayLike) -> FloatArray:
     """Three finite components."""
-    try:
-        components = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        components = np.empty(0)
-    if components.shape != (3,) or not np.all(np.isfinite(components)):
+    components = three_finite(value)
+    if components is None:
         raise InputError(f"remanence: {name} is {value!r}; it needs 3 finite components")
     return components
 
