@@ -19,7 +19,7 @@ from magshell.arrays import FloatArray
 from magshell.equations.discretisation import Discretisation
 from magshell.equations.local_field import shaped
 from magshell.evaluation import points
-from magshell.evaluation.reactions import held_forces
+from magshell.evaluation.reactions import held_forces, moments_of
 from magshell.magnetics.fields import Field
 from magshell.magnetics.law import X
 from magshell.model.course import Loading
@@ -149,8 +149,7 @@ def balance(discretisation: Discretisation, state: State, loading: Loading, resi
     load = discretisation.loads.forces(state, loading.loads)
     position = discretisation.rows.points + state.u
     director = discretisation.rows.normals + state.w
-    moments = cross(position, reaction[:, :3]) + cross(director, reaction[:, 3:6]) + reaction[:, COLUMNS["omega"]]
-    load_moments = cross(position, load[:, :3]) + cross(director, load[:, 3:6]) + load[:, COLUMNS["omega"]]
+    moments, load_moments = moments_of(reaction, position, director), moments_of(load, position, director)
     field = magnetic(discretisation, state, loading)
     force_scale = _sum_of_magnitudes(reaction[:, :3]) + _sum_of_magnitudes(load[:, :3]) + field.force_scale
     force_scale += _sum_of_magnitudes(load[:, 3:6] + load[:, COLUMNS["omega"]]) / discretisation.mesh.size

@@ -51,6 +51,12 @@ def held_forces(discretisation: Discretisation, residual: FloatArray) -> FloatAr
     return discretisation.to_global(np.where(held, residual, 0.0))
 
 
+def moments_of(forces: FloatArray, arms: FloatArray, directors: FloatArray) -> FloatArray:
+    """Moments (n, 3) of forces (n, 11) on the unknowns of rows, with the arms and directors (n, 3) of these."""
+    turning = forces[:, COLUMNS["omega"]]
+    return cross(arms, forces[:, COLUMNS["u"]]) + cross(directors, forces[:, COLUMNS["w"]]) + turning
+
+
 def reactions(discretisation: Discretisation, state: State, forces: FloatArray) -> list[Reaction]:
     """The reaction of each named support, from the forces of all supports (rows, 11), global axes; and of springs."""
     x, d = discretisation.rows.points + state.u, discretisation.rows.normals + state.w
@@ -66,6 +72,6 @@ def reactions(discretisation: Discretisation, state: State, forces: FloatArray) 
     model = discretisation.model
     for spring, elastic, one in zip(model.springs, model.elastic, discretisation.springs.each(state), strict=True):
         point = elastic.weights @ x[: len(elastic.weights)] if elastic.about is None else elastic.about
-        moments = cross(x - point, one[:, COLUMNS["u"]]) + cross(d, one[:, COLUMNS["w"]]) + one[:, COLUMNS["omega"]]
+        moments = moments_of(one, x - point, d)
         found.append(Reaction(reaction_name(spring), point, one[:, COLUMNS["u"]].sum(axis=0), moments.sum(axis=0)))
     return found

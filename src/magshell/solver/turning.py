@@ -19,9 +19,10 @@ import numpy as np
 from magshell.arrays import FloatArray
 from magshell.equations.discretisation import Discretisation
 from magshell.equations.instant import Increment, Instant
+from magshell.evaluation.reactions import moments_of
 from magshell.model.course import Loading
 from magshell.model.rigid import FreeTurn, direction
-from magshell.shell.rotation import cross, exponential, matrix
+from magshell.shell.rotation import exponential, matrix
 from magshell.shell.state import State
 from magshell.shell.unknowns import COLUMNS, COMPONENTS
 from magshell.solver.newton import StepFailure
@@ -105,7 +106,7 @@ class _Turning:
         d, rows = self.discretisation, self.discretisation.rows
         r = np.where(self._carried, d.to_global(d.assemble(Instant(state, self.loading), tangent=False).residual), 0.0)
         arm, director = rows.points + state.u - self.turn.centre, rows.normals + state.w
-        moments = cross(arm, r[:, COLUMNS["u"]]) + cross(director, r[:, COLUMNS["w"]]) + r[:, COLUMNS["omega"]]
+        moments = moments_of(r, arm, director)
         return self.turn.axes @ moments.sum(axis=0), float(np.linalg.norm(moments, axis=1).sum())
 
     def _slope(self, state: State) -> FloatArray:
