@@ -53,29 +53,31 @@ def _of_field(model: Repeating, one: Repeated) -> Iterator[str]:
     if not shell.magnetised and not any(np.any(body.moment) for body in shell.rigid):
         return
     Q, (nodes, images) = one.rotation(shell.mesh), one.nodes(shell.mesh)
-    points = shell.mesh.points[[nodes, images]]
+    for number, here, there in flux_densities(model, shell.mesh.points[nodes], shell.mesh.points[images]):
+        off = np.linalg.norm(there - here @ Q.T, axis=1)
+        if off.max() > 2.0 * TYPED * np.linalg.norm(here, axis=1).max():
+            where = f" in stage {number + 1}" if len(model.stages) > 1 else ""
+            uniform = isinstance(model.field, UniformField)
+            right = "a uniform field must lie along the axis" if uniform else "it must be repeated as the shell is"
+            yield f"the neighbour, {one.words}, would see another field{where}: {right}. {WHOLE}"
+            return
+
+
+def flux_densities(
+    model: Repeating, points: FloatArray, images: FloatArray
+) -> Iterator[tuple[int, FloatArray, FloatArray]]:
+    """Stage, and the flux density (n, 3) at points and their images at its start, middle and end.
+
+    States whose field is unknown there are left out.
+    """
     for number in range(len(model.stages)):
         for load_factor in (0.0, 0.5, 1.0):
             drives = model.course(number).amounts(load_factor).drives
             try:
-                here, there = (_flux_density(model.field, drives, some) for some in points)
+                here, there = (model.field.at(drives, x, second=False).flux_density for x in (points, images))
             except FieldUnknown:
-                return
-            off = np.linalg.norm(there - here @ Q.T, axis=1)
-            if off.max() > 2.0 * TYPED * np.linalg.norm(here, axis=1).max():
-                where = f" in stage {number + 1}" if len(model.stages) > 1 else ""
-                right = (
-                    "a uniform field must lie along the axis"
-                    if isinstance(model.field, UniformField)
-                    else "it must be repeated as the shell is"
-                )
-                yield f"the neighbour, {one.words}, would see another field{where}: {right}. {WHOLE}"
-                return
-
-
-def _flux_density(field: Field, drives: FloatArray, points: FloatArray) -> FloatArray:
-    B = field.at(drives, points, second=False).flux_density
-    return np.broadcast_to(B, points.shape)
+                continue
+            yield number, np.broadcast_to(here, points.shape), np.broadcast_to(there, points.shape)
 
 
 def _of_weight(model: Repeating, one: Repeated) -> Iterator[str]:

@@ -9,15 +9,13 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from magshell.arrays import FloatArray, IntArray
-from magshell.magnetics.fields import Field, FieldUnknown, UniformField
+from magshell.magnetics.fields import UniformField
 from magshell.mesh import Mesh
 from magshell.mesh.geometry import COINCIDENT
 from magshell.model import repetition
-from magshell.model.course import Course
 from magshell.model.loads import Load
 from magshell.model.reflection import TYPED, angle_to_plane, in_plane, is_normal, polar
-from magshell.model.shell import Shell
-from magshell.model.stages import Stage
+from magshell.model.repetition import Repeating, flux_densities
 from magshell.model.support import Support
 from magshell.model.supports import mirror_planes
 from magshell.shell.normals import nodal_normals
@@ -39,20 +37,11 @@ class Plane(NamedTuple):
     nodes: IntArray
 
 
-class Mirrored(Protocol):
+class Mirrored(Repeating, Protocol):
     """What a model must offer here."""
 
     @property
-    def shell(self) -> Shell: ...
-    @property
     def supports(self) -> Sequence[Support]: ...
-    @property
-    def field(self) -> Field: ...
-    @property
-    def loads(self) -> Sequence[Load]: ...
-    @property
-    def stages(self) -> Sequence[Stage]: ...
-    def course(self, stage: int) -> Course: ...
 
 
 def planes(model: Mirrored) -> list[Plane]:
@@ -173,19 +162,13 @@ def _signs_in_space(model: Mirrored, plane: Plane) -> Iterator[tuple[int, int | 
         return
     points, offset = model.shell.mesh.points, float((model.shell.mesh.points[plane.nodes] @ plane.normal).mean())
     images = polar(points, plane.normal) + 2.0 * offset * plane.normal
-    for number in range(len(model.stages)):
-        for load_factor in (0.0, 0.5, 1.0):
-            drives = model.course(number).amounts(load_factor).drives
-            try:
-                here, there = (model.field.at(drives, x, second=False).flux_density for x in (points, images))
-            except FieldUnknown:
-                continue
-            size = float(np.linalg.norm(here, axis=1).max())
-            if size > 0.0:
-                mirrored = polar(here, plane.normal)
-                off = {sign: np.linalg.norm(there - sign * mirrored, axis=1).max() for sign in (MIRRORED, REVERSED)}
-                alike = [sign for sign, gap in off.items() if gap <= 2.0 * TYPED * size]
-                yield number, (MIRRORED if alike == [MIRRORED] else REVERSED if alike else None)
+    for number, here, there in flux_densities(model, points, images):
+        size = float(np.linalg.norm(here, axis=1).max())
+        if size > 0.0:
+            mirrored = polar(here, plane.normal)
+            off = {sign: np.linalg.norm(there - sign * mirrored, axis=1).max() for sign in (MIRRORED, REVERSED)}
+            alike = [sign for sign, gap in off.items() if gap <= 2.0 * TYPED * size]
+            yield number, (MIRRORED if alike == [MIRRORED] else REVERSED if alike else None)
 
 
 def _of_loads(model: Mirrored, plane: Plane) -> Iterator[str]:
