@@ -12,6 +12,11 @@ def vector(components: Iterable[float]) -> str:
     return f"({', '.join(f'{component:.4g}' for component in components)})"
 
 
+def place(point: Iterable[float]) -> str:
+    """A position, m, in millimetres."""
+    return f"({', '.join(f'{1e3 * x:.4g}' for x in point)}) mm"
+
+
 def quantity(value: float | tuple[float, ...], dimension: Dimension) -> str:
     """A quantity, or several in brackets, with units."""
     if isinstance(value, tuple):

@@ -31,6 +31,7 @@ from magshell.model.reference import make_of, reference_of_model, stiffest_of
 from magshell.openblas import allocate_buffers
 from magshell.shell.state import State
 from magshell.shell.unknowns import COLUMNS, COMPONENTS, UNKNOWNS
+from magshell.wording import place
 
 KINDS = (*COLUMNS, "alpha")
 # Largest change of an unknown, in its unit, over which the body's own field is differentiated.
@@ -280,8 +281,8 @@ class Discretisation:
         units = np.array([self._unit(column) for column in range(COMPONENTS)])
         magnitudes = np.abs(increment.nodal) / units
         node, column = np.unravel_index(np.argmax(magnitudes), magnitudes.shape)
-        position = ", ".join(f"{1e3 * x:.4g}" for x in self.rows.points[node])
-        return float(magnitudes[node, column]), f"{UNKNOWNS[column]} of {self.rows.words(int(node))} at ({position}) mm"
+        where = f"{self.rows.words(int(node))} at {place(self.rows.points[node])}"
+        return float(magnitudes[node, column]), f"{UNKNOWNS[column]} of {where}"
 
     def _unit(self, column: int) -> float:
         if column < COLUMNS["u"].stop:

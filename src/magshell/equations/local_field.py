@@ -16,6 +16,7 @@ from magshell.shell.body import Reference
 from magshell.shell.positions import level_positions
 from magshell.shell.section import LocalField
 from magshell.shell.state import State
+from magshell.wording import place
 
 
 class FieldAtLevels:
@@ -89,8 +90,8 @@ class FieldAtLevels:
                 inside = np.flatnonzero(part.containing(own, points) != OUTSIDE)
                 if inside.size:
                     element = int(inside[0]) // int(np.prod(self._reference.body.levels.shape[1:]))
-                    place = ", ".join(f"{1e3 * x:.4g}" for x in points[inside[0]])
-                    raise FieldLost(element, f"it is inside a magnet of {part.name}, at ({place}) mm")
+                    where = place(points[inside[0]])
+                    raise FieldLost(element, f"it is inside a magnet of {part.name}, at {where}")
 
     def _nearest(self, points: FloatArray, unknown: FieldUnknown) -> int | None:
         """Element with the level that is nearest to where the field is not known."""

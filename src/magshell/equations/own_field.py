@@ -32,6 +32,7 @@ from magshell.shell.positions import level_positions
 from magshell.shell.samples import samples
 from magshell.shell.section import LocalField
 from magshell.shell.state import State
+from magshell.wording import place
 
 SYMMETRIC = np.array([0, 1, 2, 1, 3, 4, 2, 4, 5])
 """Of the nine ∂B_i/∂x_j, which of the six different ones each is."""
@@ -205,12 +206,11 @@ class OwnField:
     def _too_near(self, groups: Groups, one: int, other: int) -> FieldLost:
         elements = len(self._nodes)
         what = f"element {other}" if other < elements else "another rigid body"
-        place = ", ".join(f"{1e3 * x:.4g}" for x in groups.centres[one])
         mine = "it" if one < elements else "a rigid body with a magnetic moment"
         return FieldLost(
             one if one < elements else None,
-            f"{mine}, at ({place}) mm, comes so near to {what} that their field on each other is not resolved; smaller "
-            "elements resolve it, unless they pass through each other",
+            f"{mine}, at {place(groups.centres[one])}, comes so near to {what} that their field on each other is not "
+            "resolved; smaller elements resolve it, unless they pass through each other",
         )
 
 

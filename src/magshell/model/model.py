@@ -40,6 +40,7 @@ from magshell.model.supports import mirror_planes
 from magshell.model.turn import turned_bodies
 from magshell.multipliers import amplitudes
 from magshell.shell.state import State
+from magshell.wording import place
 
 NO_FIELD = UniformField((0.0, 0.0, 0.0))
 
@@ -310,8 +311,7 @@ class Model:
                 raise InputError(f"{where}: {unknown}") from None
             if not np.isfinite(B).all():
                 node = int(np.argmin(np.isfinite(B).all(axis=1)))
-                place = ", ".join(f"{1e3 * x:.4g}" for x in points[node])
-                raise InputError(f"field: it is not finite at node {node}, at ({place}) mm")
+                raise InputError(f"field: it is not finite at node {node}, at {place(points[node])}")
             largest = max(largest, float(np.linalg.norm(B, axis=1).max()))
         return largest
 

@@ -18,6 +18,7 @@ from magshell.keys import Key
 from magshell.mesh import Mesh
 from magshell.mesh.geometry import COINCIDENT
 from magshell.model.checked import three_numbers
+from magshell.wording import place
 
 EDGE = Key("Name", "Group of edges or nodes where the part meets one of its copies.")
 IMAGE = Key("Name", "Group where it meets the other: the copy of the first group, node by node.")
@@ -84,7 +85,7 @@ class Repeated(ABC):
         worst = int(np.argmax(distance))
         if distance[worst] > COINCIDENT * mesh.size:
             raise InputError(
-                f"{self.label}: node {one[worst]} of '{self.group}', {self.words}, comes to {_place(places[worst])}, "
+                f"{self.label}: node {one[worst]} of '{self.group}', {self.words}, comes to {place(places[worst])}, "
                 f"and the nearest node of '{self.image}', {other[nearest[worst]]}, is "
                 f"{1e3 * distance[worst]:.3g} mm away; mesh both alike, and check the motion"
             )
@@ -220,10 +221,6 @@ class Periodic(Repeated):
         """Translation (3,) from the group to the image, m."""
         one, other = (mesh.points[self._members(mesh, name)] for name in (self.group, self.image))
         return np.asarray(other.mean(axis=0) - one.mean(axis=0))
-
-
-def _place(point: FloatArray) -> str:
-    return "({}) mm".format(", ".join(f"{1e3 * x:.4g}" for x in point))
 
 
 REPEATED: dict[str, type[Repeated]] = {one.kind: one for one in (Cyclic, Periodic)}

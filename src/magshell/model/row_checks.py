@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from magshell.arrays import AnyArray, FloatArray, IntArray
+from magshell.arrays import AnyArray, IntArray
 from magshell.errors import InputError
 from magshell.model.shell import Shell
+from magshell.wording import place
 
 
 def check_hinges(shell: Shell, owner: IntArray) -> None:
@@ -55,10 +56,6 @@ def check_micro_rotation(shell: Shell, of: IntArray, turned: AnyArray) -> None:
     if turned.any():
         node = int(of[np.argmax(turned)])
         raise InputError(
-            f"shell: sheets meet at an angle at node {node}, {_at(shell.mesh.points[node])}, and micro_rotation is "
+            f"shell: sheets meet at an angle at node {node}, {place(shell.mesh.points[node])}, and micro_rotation is "
             "False; a joint carries its sheets by the micro-rotation, leave micro_rotation out"
         )
-
-
-def _at(point: FloatArray) -> str:
-    return "({}) mm".format(", ".join(f"{1e3 * x:.4g}" for x in point))

@@ -45,6 +45,7 @@ from magshell.model.shell import Shell
 from magshell.shell import rotation
 from magshell.shell.state import State
 from magshell.units import MOMENT, Dimension
+from magshell.wording import place
 
 # Sine of the angle from a plane below which a moment is in it: normals are known to the rounding of files.
 IN_PLANE = 1e-4
@@ -113,9 +114,9 @@ def _check_no_drill(shell: Shell, nodes: IntArray, normals: FloatArray, total: F
     along = np.abs(normals @ total) / np.linalg.norm(total)
     worst = int(np.argmax(along))
     if along[worst] > IN_PLANE:
-        place = ", ".join(f"{1e3 * x:.4g}" for x in shell.mesh.points[nodes[worst]])
         raise InputError(
-            f"{along[worst]:.3g} of it is along the normal at node {nodes[worst]} at ({place}) mm, and without "
+            f"{along[worst]:.3g} of it is along the normal at node {nodes[worst]} at "
+            f"{place(shell.mesh.points[nodes[worst]])}, and without "
             "micro-rotation nothing resists a turn about the normal; leave out micro_rotation = false, or let forces "
             "on parts of the group make up this moment"
         )
