@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +14,14 @@ from magshell.model.images import Images
 from magshell.model.repeated import Periodic
 from magshell.model.rigid_body import RigidBody, members_of
 from magshell.model.support import Condition
+
+
+def check_name(name: str, mesh: Mesh, bodies: Sequence[RigidBody], jumps: Sequence[Periodic]) -> None:
+    """Refuse what is the name of no group, where rigid bodies and jumps have names too."""
+    names = [*mesh.groups, *(body.name for body in bodies), *(jump.name for jump in jumps)]
+    if (bodies or jumps) and name not in names:
+        what = " or ".join(["group", *["rigid body"] * bool(bodies), *["jump"] * bool(jumps)])
+        raise InputError(f"There is no {what} '{name}'. {suggest(name, names)}")
 
 
 class Places(NamedTuple):
@@ -73,10 +81,7 @@ class Places(NamedTuple):
         for number, one in enumerate(self._beyond):
             if one.name == name:
                 return np.array([len(self.mesh.points) + number])
-        if self._beyond and name not in self.mesh.groups:
-            names = [*self.mesh.groups, *(one.name for one in self._beyond)]
-            what = " or ".join(["group", *["rigid body"] * bool(self.bodies), *["jump"] * bool(self.jumps)])
-            raise InputError(f"There is no {what} '{name}'. {suggest(name, names)}")
+        check_name(name, self.mesh, self.bodies, self.jumps)
         return self.mesh.nodes_of(name)
 
     def words(self, place: int) -> str:

@@ -19,6 +19,7 @@ from magshell.model.hinge import Hinge
 from magshell.model.images import Images, images_of
 from magshell.model.overall import overall_remanence
 from magshell.model.parts import Draft, Heights, Part, completed_drafts, drafts_of, heights_of, parts_of
+from magshell.model.places import check_name
 from magshell.model.region import NO_REMANENCE, Layer, Region
 from magshell.model.repeated import Periodic, Repeated
 from magshell.model.rigid_body import RigidBody
@@ -227,9 +228,7 @@ class Shell:
             There is none of this name.
         """
         groups = {body.name: body.group for body in self.rigid} | {one.name: one.image for one in self.periodic}
-        if name not in groups and name not in self.mesh.groups and groups:
-            what = " or ".join(["group", *["rigid body"] * bool(self.rigid), *["jump"] * bool(self.periodic)])
-            raise InputError(f"There is no {what} '{name}'. {suggest(name, [*self.mesh.groups, *groups])}")
+        check_name(name, self.mesh, self.rigid, self.periodic)
         return self.mesh.nodes_of(groups.get(name, name))
 
     def mean_of(self, parameter: str) -> FloatArray:
