@@ -66,8 +66,11 @@ def in_a_fork(work: Callable[[], str]) -> str:
     read, write = os.pipe()
     child = os.fork()
     if child == 0:
-        os.write(write, work().encode())
-        os._exit(0)
+        try:
+            os.write(write, work().encode())
+            os._exit(0)
+        finally:  # whatever happens, no second copy goes on with the tests
+            os._exit(1)
     os.close(write)
     with os.fdopen(read) as answer:
         found = answer.read()
@@ -197,9 +200,11 @@ def _held() -> Iterator[None]:
     thread = threading.Thread(target=hold)
     thread.start()
     entered.wait()
-    yield
-    leave.set()
-    thread.join()
+    try:
+        yield
+    finally:
+        leave.set()
+        thread.join()
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system does not fork")
