@@ -359,7 +359,8 @@ def test_a_user_without_a_home(cache, monkeypatch, kind, name):
 @pytest.mark.skipif(importlib.util.find_spec("fcntl") is None, reason="no locks of files")
 @each_kind
 def test_of_processes_that_need_the_same_one_compiles(cache, caplog, monkeypatch, kind, name):
-    """The other waits, says so, and reads the cache."""
+    """The other waits, says so, and reads the cache. Two threads play the processes, which share no lock of threads."""
+    monkeypatch.setattr(compiled, "_one_thread", contextlib.nullcontext())
     first, second, hits = kind(), kind(), []
     with first.kept._one_process():
         other = threading.Thread(target=lambda: hits.append(second.use()))
