@@ -13,7 +13,7 @@ demo: $(VENV)/installed
 	$(BIN)/magshell run gripper --out results/gripper
 
 test: lint
-	$(BIN)/pytest -n 3 --dist loadfile
+	$(BIN)/pytest -n 3 --dist loadfile --max-worker-restart 0
 
 lint: $(VENV)/installed-dev
 	$(BIN)/ruff check .
