@@ -69,7 +69,7 @@ def combinations():
                 yield pytest.param(HELD[held], BODIES[body], LOADS[loads], id=f"{held}-{body}-{loads}", marks=marks)
 
 
-@pytest.mark.parametrize(("held", "body", "loads"), combinations())
+@pytest.mark.parametrize(("held", "body", "loads"), list(combinations()))
 def test_tangent_in_equilibrium(body, loads, held):
     path = solved(loads=loads, supports=held, **body)
     d, step = path.discretisation, path.steps[-1]
