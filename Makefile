@@ -1,5 +1,5 @@
 # make demo: a virtual environment, the gripper solved, its picture.   make test: lint, types, tests.
-# make docs: the documentation site, in docs/_build/html; any warning is an error (make test builds it too).
+# make docs: the documentation site, in docs/_build/html; any warning is an error (make test builds it with one example).
 # make verify: the long tests, 10 000 damaged files, and the studies behind the pages of docs; an hour or so, may be interrupted.
 PYTHON ?= python3
 VENV ?= .venv
