@@ -1,9 +1,11 @@
 # make demo: a virtual environment, the gripper solved, its picture.   make test: lint, types, tests.
-# make docs: the documentation site, in docs/_build/html; any warning is an error (make test builds it too).
+# make docs: the documentation site, in docs/_build/html; any warning is an error (make test builds it with one example).
 # make verify: the long tests, 10 000 damaged files, and the studies behind the pages of docs; an hour or so, may be interrupted.
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
+# Containers often forbid Python to keep its byte code; each process of the tests would compile all that it imports.
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: demo test lint docs figures verify clean
 
@@ -11,7 +13,7 @@ demo: $(VENV)/installed
 	$(BIN)/magshell run gripper --out results/gripper
 
 test: lint
-	$(BIN)/pytest -n 3 --dist loadfile
+	$(BIN)/pytest -n 3 --dist loadfile --max-worker-restart 0
 
 lint: $(VENV)/installed-dev
 	$(BIN)/ruff check .

@@ -21,16 +21,13 @@ from magshell.errors import InputError
 from magshell.output.checkpoint import read_step, step_files
 
 # Of each problem. A run may make so many steps before, and compute so long after them or, with none, from the start, s.
-KILLS, STEPS, SHORT, LONG = 26, 2, 0.04, 0.3
+STEPS, SHORT, LONG = 2, 0.04, 0.3
 FIELD = 'flux_density = [0, 0, "2 mT"]\nstops = ["1 mT", "2 mT"]'
-SHORT_STEPS = "[solver]\nfirst_step = 0.02\nlargest_step = 0.04\n"
 # Up and down with stops; a strip that buckles in a field against its remanence, and its branch.
 PROBLEMS = {
-    "stages": changed(STRIP, (FIELD, 'flux_density = [0, 0, "5 mT"]\nstops = ["1 mT"]\nhistory = [1, -0.5]'))
-    + SHORT_STEPS,
+    "stages": changed(STRIP, (FIELD, 'flux_density = [0, 0, "5 mT"]\nstops = ["1 mT"]\nhistory = [1, -0.5]')),
     "branch": changed(STRIP, (FIELD, 'flux_density = ["-9 mT", 0, 0]\nhistory = [1, 1.1]'))
-    + '[[stages]]\n[[stages]]\ncontrol = "arc-length"\nbranch = 1\n'
-    + SHORT_STEPS,
+    + '[[stages]]\n[[stages]]\ncontrol = "arc-length"\nbranch = 1\n',
 }
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork")
 
@@ -41,13 +38,18 @@ def forks() -> Iterator[Forks]:
         yield running
 
 
+@pytest.mark.parametrize(
+    ("kills", "largest_step"),
+    [pytest.param(3, 0.1, id="a few times"), pytest.param(26, 0.04, id="many times", marks=pytest.mark.verify)],
+)
 @pytest.mark.parametrize("name", PROBLEMS)
-def test_killed_until_it_is_done(name: str, forks: Forks, tmp_path: Path) -> None:
+def test_killed_until_it_is_done(name: str, kills: int, largest_step: float, forks: Forks, tmp_path: Path) -> None:
     file, whole, out, shown = (tmp_path / part for part in (f"{name}.toml", "whole", "out", "shown.txt"))
-    file.write_text(PROBLEMS[name])
+    steps = f"[solver]\nfirst_step = {largest_step / 2}\nlargest_step = {largest_step}\n"
+    file.write_text(PROBLEMS[name] + steps)
     assert forks.run(["run", str(file), "--out", str(whole)], tmp_path / "whole.txt") == 0
     moments, killed, kept, seen = random.Random(name), list[Kill](), [0], dict[Path, bytes]()
-    while len(killed) < KILLS:
+    while len(killed) < kills:
         begun = (out / "problem.toml").exists()
         arguments = ["run", "--resume", str(out)] if begun else ["run", str(file), "--out", str(out)]
         steps = moments.randint(0, STEPS)
@@ -64,7 +66,7 @@ def test_killed_until_it_is_done(name: str, forks: Forks, tmp_path: Path) -> Non
         if (out / "problem.toml").exists():
             kept.append(check_killed(out, whole, shown.read_text(), kept[-1], seen, where))
     stages = [steps for steps in set(kept) if 0 < steps < len(step_files(whole))]
-    assert len(stages) > KILLS // 8, f"kills fell in few places of the path: {kept}"
+    assert len(stages) > kills // 8, f"kills fell in few places of the path: {kept}"
     assert forks.run(["run", "--resume", str(out)], shown) == 0, where
     check_finished(out, whole, where)
 

@@ -93,7 +93,12 @@ def test_help(encoding: str, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 SOLVING = {"run", "sweep", "buckling", "plot", "show", "view", "export"}
-MEETINGS = [(use, encoding) for use in USES for encoding in (["ascii", "cp932"] if use in SOLVING else ENCODINGS)]
+MEETINGS = [
+    pytest.param(use, encoding, marks=pytest.mark.verify if use in SOLVING and encoding != "ascii" else ())
+    for use in USES
+    for encoding in (["ascii", "cp932"] if use in SOLVING else ENCODINGS)
+]
+"""Those that solve or draw meet the second code page in `make verify`."""
 
 
 @pytest.mark.parametrize(("use", "encoding"), MEETINGS)

@@ -8,6 +8,7 @@ import re
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import cache
 from typing import Annotated, ClassVar, NamedTuple
 
 import numpy as np
@@ -40,6 +41,7 @@ LAWS = (material_laws.callbacks, coupling_laws.callbacks)
 REGISTRIES = (COUPLINGS, ELEMENTS, LOADS, MATERIALS, OUTPUTS, REMANENCES, SERIES, SUPPORTS, *LAWS)
 
 
+@cache
 def can_draw() -> bool:
     """Whether this machine can draw in three dimensions."""
     try:
@@ -47,9 +49,6 @@ def can_draw() -> bool:
     except rendering.RenderingUnavailable:
         return False
     return True
-
-
-CAN_DRAW = can_draw()
 
 
 def block(recipe: str, language: str) -> str:
@@ -95,7 +94,7 @@ def used(tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]) -> Callable
         file.write_text(text)
         assert cli.main(["check", str(file)]) == 0
         said = capsys.readouterr().out
-        if CAN_DRAW:
+        if can_draw():
             assert cli.main(["show", str(file), "--out", str(picture)]) == 0
             assert picture.read_bytes().startswith(b"\x89PNG")
         problem = ms.problem.load(file)
@@ -255,7 +254,7 @@ def test_a_quantity(follow: Callable, used: Callable, tmp_path: pathlib.Path) ->
         grid(path.discretisation, step).point_data["distance"], np.linalg.norm(step.state.u, axis=1)
     )
     path.view(tmp_path / "view.html", color="distance")
-    if CAN_DRAW:
+    if can_draw():
         assert path.plot(color="s").size
 
 

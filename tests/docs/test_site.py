@@ -1,10 +1,11 @@
-"""The documentation site: built once, strictly, with its examples and its tutorial executed."""
+"""The documentation site: built strictly, its tutorial and an example executed; all examples in `make verify`."""
 
 from __future__ import annotations
 
 import html
 import importlib
 import inspect
+import operator
 import os
 import pathlib
 import re
@@ -21,22 +22,21 @@ from magshell.output.rendering import RenderingUnavailable, require_rendering
 ROOT = pathlib.Path(__file__).parents[2]
 NOT_PAGES = ("_build", "worked-examples", "generated", "__pycache__")
 GALLERY = sorted(path.stem for path in (ROOT / "docs" / "gallery").glob("plot_*.py"))
+EXECUTED = "plot_1_strip"
 PAGES = sorted(path.relative_to(ROOT / "docs").with_suffix("").as_posix() for path in (ROOT / "docs").glob("*.md"))
 MODULES = ("magshell.mesh", "magshell.magnetics.remanence", "magshell.problem")
 
 
-@pytest.fixture(scope="module")
-def site(tmp_path_factory):
-    """The folder of the built site; its sources are copied, so that nothing of an earlier build is in it."""
+def built(folder, *options):
+    """The folder of the site; its sources are copied, so that nothing of an earlier build is in it."""
     try:
         require_rendering()
     except RenderingUnavailable as unavailable:
         pytest.skip(str(unavailable))
-    folder = tmp_path_factory.mktemp("site")
     shutil.copytree(ROOT / "docs", folder / "docs", ignore=shutil.ignore_patterns(*NOT_PAGES))
     shutil.copy(ROOT / "CHANGELOG.md", folder)
     built = subprocess.run(
-        [sys.executable, "-m", "sphinx", "-b", "html", "-j", "2", "-W", "--keep-going", "-q", "docs", "html"],
+        [sys.executable, "-m", "sphinx", "-b", "html", "-j", "2", "-W", "--keep-going", "-q", *options, "docs", "html"],
         cwd=folder,
         env={**os.environ, "OMP_NUM_THREADS": "1", "MPLBACKEND": "agg"},
         capture_output=True,
@@ -45,6 +45,12 @@ def site(tmp_path_factory):
     )
     assert built.returncode == 0, built.stderr[-6000:]
     return folder / "html"
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    """With one of the examples executed: all of them take minutes."""
+    return built(tmp_path_factory.mktemp("site"), "-D", f"sphinx_gallery_conf.filename_pattern={EXECUTED}")
 
 
 @pytest.fixture(scope="module")
@@ -67,13 +73,34 @@ def test_every_page_is_reached_from_the_front_page(pages, name):
     assert f"{name}.html" in linked, sorted(linked)
 
 
-@pytest.mark.parametrize("name", GALLERY)
-def test_examples_have_pictures(site, pages, name):
-    page = pages[f"worked-examples/{name}.html"]
+def check_pictures(site, name):
+    page = (site / "worked-examples" / f"{name}.html").read_text()
     assert re.search(r'<img[^>]* src="(\.\./_images/sphx_glr_|data:image/png)', page), name
     thumbnail = Image.open(site / "_images" / f"sphx_glr_{name}_thumb.png").convert("L")
     dark = sum(count for grey, count in enumerate(thumbnail.histogram()) if grey < 200)
-    assert dark > 300, f"{dark} pixels that are not background"
+    assert dark > 300, f"{name}: {dark} pixels that are not background"
+
+
+def test_an_example_has_pictures(site):
+    check_pictures(site, EXECUTED)
+
+
+@pytest.mark.verify
+def test_examples_have_pictures(tmp_path):
+    site = built(tmp_path)
+    for name in GALLERY:
+        check_pictures(site, name)
+
+
+@pytest.mark.parametrize("name", GALLERY)
+def test_what_examples_import_exists(name):
+    """The small twin: names of magshell that an example says, `ms.` and what follows, are there."""
+    text = (ROOT / "docs" / "gallery" / f"{name}.py").read_text()
+    compile(text, name, "exec")
+    said = sorted(set(re.findall(r"\bms((?:\.[A-Za-z]\w*)+)", text)))
+    assert said
+    for names in said:
+        operator.attrgetter(names[1:])(ms)
 
 
 def test_the_tutorial_was_executed(pages):

@@ -1,4 +1,7 @@
-"""The whole way of a person: a drawing, a mesh, a check, a look, a run that is killed and goes on, a page."""
+"""The whole way of a person: a drawing, a mesh, a check, a look, a run that is killed and goes on, a page.
+
+A part of `make verify`; the tests have its pieces: the way from a DXF to a page, killed runs, pages in a browser.
+"""
 
 from __future__ import annotations
 
@@ -23,6 +26,7 @@ PROBLEM = Path(__file__).with_name("tongue.toml")
 COMMAND = [sys.executable, "-m", "magshell"]
 ALONE = {**os.environ, "OMP_NUM_THREADS": "1"}
 KEPT_AT_LEAST = 2
+pytestmark = pytest.mark.verify
 UNBROKEN = f"""
 import pathlib
 import magshell as ms

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 import magshell as ms
+from magshell.cli import main
 from magshell.errors import InputError
 from magshell.problem import copies
 
@@ -56,17 +57,36 @@ WAYS = {
     "sheet.svg": (draw_svg, "sheet, sheet-edges, hole-1, end", '["20 mm", 0, 0]'),
     "plate.stl": (copy_plate, "the mid-surface of a solid 2 mm thick", '["20 mm", 0, "1 mm"]'),
 }
+LONG = ("sheet.svg", "plate.stl")
+"""The whole way of these is a part of `make verify`."""
 
 
-@pytest.mark.parametrize("name", WAYS)
-def test_the_whole_way(name, tmp_path, monkeypatch):
+def write_case(name, folder):
+    """Draw, and write the problem; words that `magshell check` says of it."""
     for package in NEEDED:
         pytest.importorskip(package, reason=f"{package} is not installed", exc_type=(ImportError, OSError))
     draw, said, tip = WAYS[name]
-    more = draw(tmp_path / name)
+    more = draw(folder / name)
     text = PROBLEM.read_text().replace('"FILE"\n', f'"{name}"\n{more}')
     text = text.replace('["20 mm", 0, 0]', tip) if name.endswith(".stl") else text
-    (tmp_path / "case.toml").write_text(text)
+    (folder / "case.toml").write_text(text)
+    return said
+
+
+@pytest.mark.parametrize("name", LONG)
+def test_a_check(name, tmp_path, monkeypatch, capsys):
+    """The small twin of the whole way."""
+    said = write_case(name, tmp_path)
+    monkeypatch.chdir(tmp_path)
+    assert main(["check", "case.toml"]) == 0
+    told = capsys.readouterr().out
+    assert said in told
+    assert "warning" not in told
+
+
+@pytest.mark.parametrize("name", ["sheet.dxf", *(pytest.param(name, marks=pytest.mark.verify) for name in LONG)])
+def test_the_whole_way(name, tmp_path, monkeypatch):
+    said = write_case(name, tmp_path)
     told = magshell(tmp_path, "check", "case.toml")
     assert said in told
     assert "warning" not in told

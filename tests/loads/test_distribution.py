@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from battery import PATCHES
@@ -11,6 +13,7 @@ from hypothesis import strategies as st
 import magshell as ms
 from loads.bodies import grouped
 from loads.cases import applied, at_rest, shell_of, torques
+from magshell.model.rows import rows_of
 from magshell.shell.elements import ELEMENTS
 
 MESHES = {name: grouped(make()) for name, make in PATCHES.items()}
@@ -21,12 +24,20 @@ each_element = pytest.mark.parametrize("element", ELEMENTS.values(), ids=ELEMENT
 each_load = pytest.mark.parametrize("load", [ms.Force, ms.Moment])
 
 
+@cache
+def body(mesh, element):
+    """A shell and its rows."""
+    shell = shell_of(mesh, element)
+    return shell, rows_of(shell)
+
+
 def on_nodes(mesh, element, load):
     """Forces or torques of the nodes, (nodes, 3)."""
-    forces = applied(load, shell_of(mesh, element)).forces(at_rest(mesh))
+    forces = load.applied(*body(mesh, element)).forces(at_rest(mesh))
     return forces[:, :3] if load.kind == "force" else torques(mesh, at_rest(mesh), forces)
 
 
+@cache
 def shares(mesh, element, load, group):
     """The nodes' parts of a unit total, (nodes,)."""
     return on_nodes(mesh, element, load(group, (1.0, 0.0, 0.0)))[:, 0]

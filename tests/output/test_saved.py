@@ -17,6 +17,7 @@ from magshell.errors import InputError
 from magshell.solver.events import Observer
 
 LENGTH = 11e-3
+pytestmark = pytest.mark.usefixtures("small_pictures")
 
 
 def model(remanence: Any = None) -> ms.Model:

@@ -7,6 +7,7 @@ import ctypes
 import errno
 import importlib.util
 import inspect
+import json
 import logging
 import os
 import pathlib
@@ -105,52 +106,56 @@ def files(cache):
 # -- the sources -----------------------------------------------------------------------------------------------------
 
 
-def digest_of_copy(folder, source):
-    """Digest of a source in a process that has this copy of the package."""
-    script = f"from magshell import kernel_cache as k; print(k.digest(k.pathlib.Path(k.__file__).parent/'{source}'))"
-    command = [sys.executable, "-c", script]
-    done = subprocess.run(command, env={"PYTHONPATH": str(folder)}, cwd=folder, capture_output=True, text=True)
-    assert not done.returncode, done.stderr
-    return done.stdout
-
-
+EDITS = {
+    "shell/point.py": (True, False),
+    "shell/section.py": (True, False),
+    "shell/elements/definition.py": (True, False),
+    "materials/law.py": (False, True),
+    "magnetics/law.py": (True, False),
+    "compiled.py": (True, True),
+    "materials/tensors.py": (True, True),
+    "materials/neo_hookean.py": (False, True),
+    "materials/mooney_rivlin.py": (False, False),
+    "magnetics/micropolar_couple.py": (False, False),
+    "equations/scatter.py": (False, False),
+    "solver/newton.py": (False, False),
+    "output/vtu.py": (False, False),
+}
+"""Sources, and whether the digests of the kernels and of a law change with them."""
+DIGESTS = """
+import json, pathlib, sys
+from magshell import kernel_cache
+package, found = pathlib.Path(kernel_cache.__file__).parent, {}
+*sources, edits = json.loads(sys.argv[1])
+for edited in ("", *edits):
+    for cached in (kernel_cache.digest, kernel_cache._imported, kernel_cache._source_of):
+        cached.cache_clear()
+    content = edited and (package / edited).read_text()
+    if edited:
+        (package / edited).write_text(content + "\\n# edited\\n")
+    found[edited] = [kernel_cache.digest(package / source) for source in sources]
+    if edited:
+        (package / edited).write_text(content)
+print(json.dumps(found))
+"""
 KERNELS, LAW = "shell/loops.py", "materials/neo_hookean.py"
 
 
 @pytest.fixture(scope="module")
-def copied(tmp_path_factory):
-    """A copy of the package, and its digests."""
+def digests(tmp_path_factory):
+    """Of the kernels and of a law in a copy of the package, by what is edited there, in a process of its own."""
     folder = tmp_path_factory.mktemp("copied")
     shutil.copytree(PACKAGE, folder / "magshell", ignore=shutil.ignore_patterns("__pycache__"))
-    return folder, {source: digest_of_copy(folder, source) for source in (KERNELS, LAW)}
+    command = [sys.executable, "-c", DIGESTS, json.dumps([KERNELS, LAW, list(EDITS)])]
+    done = subprocess.run(command, env={"PYTHONPATH": str(folder)}, cwd=folder, capture_output=True, text=True)
+    assert not done.returncode, done.stderr
+    return json.loads(done.stdout)
 
 
-@pytest.mark.parametrize(
-    ("source", "of_kernels", "of_law"),
-    [
-        ("shell/point.py", True, False),
-        ("shell/section.py", True, False),
-        ("shell/elements/definition.py", True, False),
-        ("materials/law.py", False, True),
-        ("magnetics/law.py", True, False),
-        ("compiled.py", True, True),
-        ("materials/tensors.py", True, True),
-        ("materials/neo_hookean.py", False, True),
-        ("materials/mooney_rivlin.py", False, False),
-        ("magnetics/micropolar_couple.py", False, False),
-        ("equations/scatter.py", False, False),
-        ("solver/newton.py", False, False),
-        ("output/vtu.py", False, False),
-    ],
-)
-def test_an_edit_of_what_it_is_made_of_changes_the_digest(copied, source, of_kernels, of_law):
+@pytest.mark.parametrize("source", EDITS)
+def test_an_edit_of_what_it_is_made_of_changes_the_digest(digests, source):
     """A law has a digest of its own: neither does an edit of it concern the kernels, nor one of theirs the law."""
-    folder, before = copied
-    content = (folder / "magshell" / source).read_text()
-    (folder / "magshell" / source).write_text(content + "\n# edited\n")
-    after = {one: digest_of_copy(folder, one) for one in before}
-    (folder / "magshell" / source).write_text(content)
-    assert {one: after[one] != before[one] for one in before} == {KERNELS: of_kernels, LAW: of_law}
+    assert tuple(after != before for after, before in zip(digests[source], digests[""], strict=True)) == EDITS[source]
 
 
 @pytest.mark.parametrize(
@@ -359,10 +364,7 @@ def test_a_user_without_a_home(cache, monkeypatch, kind, name):
 @pytest.mark.skipif(importlib.util.find_spec("fcntl") is None, reason="no locks of files")
 @each_kind
 def test_of_processes_that_need_the_same_one_compiles(cache, caplog, monkeypatch, kind, name):
-    """The other waits, says so, and reads the cache.
-
-    Threads stand for the processes, without the lock of threads that processes do not share.
-    """
+    """The other waits, says so, and reads the cache. Two threads play the processes, which share no lock of threads."""
     monkeypatch.setattr(compiled, "_one_thread", contextlib.nullcontext())
     first, second, hits = kind(), kind(), []
     with first.kept._one_process():

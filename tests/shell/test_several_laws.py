@@ -51,7 +51,7 @@ def evaluated(d, make, state, elements=slice(None)):
 
 def surface_of(d, elements=slice(None)):
     """The mid-surface of some elements of a body without regions."""
-    nodes, shell = d.mesh.elements[elements], d.model.shell
+    nodes, shell = d.mesh.elements[elements].copy(), d.model.shell  # as in models no read-only array: a further type
     ties = d.reference.body.ties
     ties = ties._replace(kind=ties.kind[elements], host=ties.host[elements])
     return Surface(nodes, ties, d.mesh.points[nodes], d.normals[nodes], shell.element, shell.micro_rotation)
