@@ -40,11 +40,11 @@ def lacks_memory(error: BaseException | None) -> bool:
     return False
 
 
-def suggest(name: str, valid: Iterable[str]) -> str:
+def suggest(name: object, valid: Iterable[str]) -> str:
     """Sentence that names the nearest valid name, or lists what there is."""
     names = sorted(valid)
     if not names:
         return "There is none."
-    near = nearest(name, names)
+    near = nearest(name, names) if isinstance(name, str) else None
     listed = ", ".join(names[:20]) + (", …" if len(names) > 20 else "")
     return (f"Did you mean '{near}'? " if near else "") + f"There is: {listed}."
