@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import re
 from collections.abc import Iterable
 
 from magshell.nearest import nearest
@@ -40,11 +41,17 @@ def lacks_memory(error: BaseException | None) -> bool:
     return False
 
 
-def suggest(name: str, valid: Iterable[str]) -> str:
+def suggest(name: object, valid: Iterable[str]) -> str:
     """Sentence that names the nearest valid name, or lists what there is."""
     names = sorted(valid)
     if not names:
         return "There is none."
-    near = nearest(name, names)
+    near = nearest(name, names) if isinstance(name, str) else None
     listed = ", ".join(names[:20]) + (", …" if len(names) > 20 else "")
-    return (f"Did you mean '{near}'? " if near else "") + f"There is: {listed}."
+    meant = " or ".join(f"'{one}'" for one in names if near and _is_named_after(one, near))
+    return (f"Did you mean {meant}? " if meant else "") + f"There is: {listed}."
+
+
+def _is_named_after(name: str, other: str) -> bool:
+    """Whether it is the same name, or that which a group has whose name in a mesh file makes the same one."""
+    return bool(re.fullmatch(rf"{re.escape(other)}(-(elements|edges|nodes)(-\d+)?)?", name))

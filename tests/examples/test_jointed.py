@@ -122,3 +122,15 @@ def test_the_ribs_stay_at_right_angles():
     directors = np.einsum("ij,nj->ni", rotation.matrix(step.state.q[joint]), rows.normals[own])
     assert len(own) == 2
     assert rows.normals[own] + step.state.w[own] == pytest.approx(directors, abs=1e-12)
+
+
+def test_compass_needle():
+    """Uniformly magnetised it stays straight, along the field: at 60°, and as far on as the field has turned."""
+    path = solved("compass-needle")
+    along = path.probe("tip").u - path.probe("tail").u + np.array([20e-3, 0.0, 0.0])
+    angles = np.unwrap(np.arctan2(along[:, 1], along[:, 0]))
+    turned = path.history.columns.index("field.angle")
+    assert turned == len(path.history.columns) - 1
+    expected = np.radians([60.0 + 90.0 * step.load_factor * step.stage for step in path.steps[1:]])
+    np.testing.assert_allclose(angles[1:], expected, atol=1e-7)
+    np.testing.assert_allclose(np.linalg.norm(along, axis=1), 20e-3, rtol=1e-4)

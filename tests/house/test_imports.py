@@ -15,9 +15,9 @@ SOURCES = pathlib.Path(magshell.__file__).parent
 
 # Lowest first; a module belongs to the longest name that it begins with, "" is the package itself.
 LAYERS = (
-    "version", "keys", "remembered", "nearest", "errors", "units", "wording", "arrays", "multipliers", "files",
-    "tables", "drawing", "kernel_cache", "compiled", "processes", "openblas", "mesh", "materials", "magnetics", "shell",
-    "magnetics.remanence", "model", "linalg", "equations", "evaluation", "solver", "output", "kernel_messages",
+    "version", "keys", "remembered", "nearest", "errors", "units", "wording", "arrays", "arguments", "multipliers",
+    "files", "tables", "drawing", "kernel_cache", "compiled", "processes", "openblas", "mesh", "materials", "magnetics",
+    "shell", "magnetics.remanence", "model", "linalg", "equations", "evaluation", "solver", "output", "kernel_messages",
     "progress", "problem", "results", "sweep", "reproduction", "cli", "__main__", "",
 )  # fmt: skip
 # The one module that finds others upward, by name: from objects to their pictures.

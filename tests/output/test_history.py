@@ -8,7 +8,8 @@ import json
 import numpy as np
 import pytest
 
-from magshell.output.history import HistoryWriter
+import magshell as ms
+from magshell.output.history import HistoryWriter, history_text
 from magshell.output.summary import write_summary
 
 
@@ -109,3 +110,19 @@ def test_summary_of_a_broken_off_path(path, tmp_path):
     assert (summary["residual"], summary["balance"], summary["sizes"]) == (None, {"work": None}, [0, 1])
     interrupted = json.loads(write_summary(path, tmp_path, reason="interrupted").read_text())
     assert interrupted["reason"] == "interrupted"
+
+
+def test_a_uniform_field_that_turns_has_its_angle() -> None:
+    """As the last column, so that all others are where they were; a field that does not turn has none."""
+    mesh = ms.mesh.rectangle(10e-3, 4e-3, (2, 1))
+    shell = ms.Shell(mesh, 1e-3, ms.MicropolarNeoHookean(1e6, 1e7), ms.remanence.constant([0.1, 0, 0]))
+    fields = [
+        ms.UniformField((0, 0, 1e-3), history=[1, 1]),
+        ms.UniformField((0, 0, 1e-3), history=[1, 1], rotation_axis=(0, 1, 0), rotation=[0.0, 0.5]),
+    ]
+    still, turned = (ms.solve(ms.Model(shell, [ms.Clamp("left")], field)) for field in fields)
+    assert turned.history.columns == [*still.history.columns, "field.angle"]
+    angles = [row.split(",")[-1] for row in history_text(turned).split()[1:]]
+    expected = [0.5 * step.load_factor if step.stage else 0.0 for step in turned.steps]
+    np.testing.assert_allclose(np.array(angles, dtype=float), expected, rtol=1e-12)
+    assert angles[-1] == "0.5"

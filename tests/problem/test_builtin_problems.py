@@ -82,6 +82,7 @@ MADE_OF = {
     "origami": (36, 4 * 100 * np.sin(np.pi / 3), {"shell": [(0.5, 50e3)]}, "base"),
     "rosette": (66, 3**0.5 / 4 * (7**2 - 3**2) + 0.5 * (16.3 * 12.3 - 11.3 * (9.7 - 3.5 * 3**0.5)), {"shell": [(0.5, 300.0)]}, "tip"),
     "wavy-sheet": (20, 80.0, {"shell": [(0.5, 300.0)]}, "crest"),
+    "compass-needle": (16, 80.0, {"shell": [(1.0, 900.0)]}, "tip tail"),
     "ribbed-plate": (144, (40 + 2 * 6) * 120.0, {"shell": [(1.0, 1000.0)]}, "end rib"),
 }  # fmt: skip
 

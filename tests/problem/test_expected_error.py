@@ -119,3 +119,11 @@ def test_rows_of_elements() -> None:
         {"middle": (2, 2), "arm": (8, 2)},
     )
     assert elements_across(cross, free(cross)) == 2
+
+
+def test_a_coarse_mesh_is_doubted() -> None:
+    """Above the last step of `in_words`; no built-in problem is."""
+    coarse = [said for elements in ((1, 1), (40, 8)) for said in strip(elements).doubts() if "coarse" in said]
+    assert coarse == ["the mesh is coarse: its expected error is " + in_words(1.0) + ". Take smaller elements"]
+    errors = {name: ms.problem.load(name).model.expected_error for name in ms.problem.names()}
+    assert {name for name, error in errors.items() if error is not None and error > STEPS[-1]} == set()

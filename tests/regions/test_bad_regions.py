@@ -64,7 +64,7 @@ BAD = {
     "remanence beside layers of a region": (
         lambda: of_regions(ms.Region("outer", remanence=ALONG, layers=[LAYER])), "remanence is given beside layers",
     ),
-    "no layer": (lambda: of_regions(ms.Region("outer", layers=[1e-3])), "layers must be a list of Layer"),
+    "no layer": (lambda: of_regions(ms.Region("outer", layers=[1e-3])), r"layers\[0\] is 0.001; it must be a Layer"),
     "negative modulus": (
         lambda: of_regions(ms.Region("outer", material=SOFT._replace(shear_modulus=-1.0))),
         r"^regions\[0\] \('outer'\): material: shear_modulus is -1; it must be finite and positive$",

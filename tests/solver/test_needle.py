@@ -209,3 +209,22 @@ def test_supports_that_hold_small_rotations_only():
     model = ms.Model(shell, [PIN, ms.Prescribe("corner", "u", 3, 0.0)], ms.UniformField(across))
     with pytest.raises(ms.SolveError, match="let the body turn by a small angle only"):
         ms.solve(model)
+
+
+@pytest.mark.parametrize(
+    ("direction", "held", "field", "words"),
+    [
+        ((1, 0, 0), (2, 3), (0.0, FIELD, 0.0), "no torque about X1, so that nothing holds"),
+        ((0, 1, 0), (1, 3), ALONG_1, "no torque about X2, so that nothing holds"),
+        ((-1, 0, 0), (1, 2), ALONG_1, "stands opposite to the field"),
+        ((1, 0, 0), (1, 2), ALONG_1, None),
+        ((0, 1, 0), (1, 2), ALONG_1, None),
+        ((1, 1, 0), (1,), ALONG_1, None),
+    ],
+)
+def test_doubted_before_the_solve(direction, held, field, words):
+    """What the solve tells of the rotation is told without it."""
+    said = needle(direction, [PIN, *(HELD[axis] for axis in held)], field).doubts()
+    of_the_rotation = [one for one in said if "torque about" in one or "opposite" in one]
+    assert len(of_the_rotation) == (words is not None)
+    assert all(words in one for one in of_the_rotation)

@@ -69,6 +69,14 @@ def _of_sources(model: Model) -> list[str]:
     return [f"{part}.{letter}{i}" for part in parts for letter in ("F", "T") for i in (1, 2, 3)]
 
 
+def _turning(model: Model) -> dict[str, int]:
+    """Angles among the amounts of a uniform field that turns, and their numbers."""
+    if not model.field.is_uniform:
+        return {}
+    turned = model.field.ends(len(model.stages)).any(axis=0)
+    return {name: i for i, name in enumerate(model.field.drives) if name.endswith(".angle") and turned[i]}
+
+
 def _has_springs(model: Model) -> bool:
     return bool(model.springs) or any(hinge.stiffness for hinge in model.shell.hinges)
 
@@ -185,6 +193,15 @@ SERIES: dict[str, Series] = {
                 f"{one.name}.{letter}{i}" for one in model.shell.periodic for letter in ("u", "F") for i in (1, 2, 3)
             ],
             lambda converged: converged.jumps.ravel().tolist(),
+        ),
+        Series(
+            "angle of the field",
+            "rad",
+            "Angle by which a uniform field has turned about its axis (`field.angle`), if it turns.",
+            lambda model: list(_turning(model)),
+            lambda converged: [
+                float(converged.loading.drives[i]) for i in _turning(converged.discretisation.model).values()
+            ],
         ),
     )
 }

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from magshell.arguments import real, shown
 from magshell.arrays import FloatArray, three_finite
 from magshell.errors import InputError
 from magshell.materials import BY_DEFAULT, DEFAULTS, Multiple, own_keys
@@ -20,15 +21,18 @@ def checked_material(where: str, material: Any, micro_rotation: bool) -> Any:
     InputError
         They are not, or they are of a micro-rotation that the shell does not have.
     """
-    if not hasattr(material, "_fields") or not hasattr(material, "problems"):
-        raise InputError(f"{where} is {material!r}; it must be a material law with its parameters")
+    if isinstance(material, type) or not hasattr(material, "_fields") or not hasattr(material, "problems"):
+        raise InputError(
+            f"{where} is {shown(material)}; it must be a material law with its parameters, "
+            "as ms.MicropolarNeoHookean(shear_modulus, lame_lambda)"
+        )
     values = []
     signed = [name for name, key in own_keys(type(material)).items() if key.kind in ("Number", "Stress")]
     for name, value in zip(material._fields, material, strict=True):
         if name in DEFAULTS and (value is BY_DEFAULT or isinstance(value, Multiple)):
             values.append(value)
             continue
-        value = float(value)
+        value = real(f"{where}: {name}", value)
         positive_ = name == "shear_modulus" or (name == "length_scale" and micro_rotation)
         if not np.isfinite(value) or (name not in signed and (value < 0.0 or (value == 0.0 and positive_))):
             allowed = "" if name in signed else " and positive" if positive_ else " and zero or positive"

@@ -11,12 +11,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from magshell.arrays import AnyArray, FloatArray, IntArray
+from magshell.arguments import instance, on_groups, several
+from magshell.arrays import AnyArray, FloatArray, IntArray, three_finite
 from magshell.drawing import drawing
 from magshell.errors import InputError, NothingLoads, suggest
 from magshell.magnetics.deformation_gradient_energy import DeformationGradientEnergy
 from magshell.magnetics.fields import Field, FieldUnknown, UniformField
 from magshell.magnetics.fields.own import has_own
+from magshell.magnetics.law import laws
 from magshell.magnetics.micropolar_couple import MicropolarCouple
 from magshell.model import coupling_limit, doubts, own_field_limit, symmetry
 from magshell.model.constraints import Constraints, resolve
@@ -38,7 +40,7 @@ from magshell.model.stages import Stage
 from magshell.model.support import Support
 from magshell.model.supports import mirror_planes
 from magshell.model.turn import turned_bodies
-from magshell.multipliers import amplitudes
+from magshell.multipliers import amplitudes, numbers
 from magshell.shell.state import State
 from magshell.wording import place
 
@@ -116,27 +118,37 @@ class Model:
     _ends: tuple[Amounts, ...] = dataclasses.field(init=False, repr=False)
 
     def __post_init__(self) -> None:
+        instance("model: shell", self.shell, Shell, "a Shell")
         mesh = self.shell.mesh
         put = object.__setattr__
+        if not isinstance(self.field, Field):
+            flux_density = "[…]" if three_finite(self.field) is None else self.field
+            instance("model: field", self.field, Field, f"a field, for instance ms.UniformField({flux_density})")
         if self.coupling is None:
             put(self, "coupling", MicropolarCouple() if self.shell.micro_rotation else DeformationGradientEnergy())
-        put(self, "supports", tuple(self.supports))
-        put(self, "loads", tuple(self.loads))
+        instance("model: coupling", self.coupling, tuple(laws()), "a coupling law, as ms.MicropolarCouple()")
+        put(self, "supports", on_groups("model: supports", self.supports, Support, "a support, as ms.Clamp(…)"))
+        put(self, "loads", on_groups("model: loads", self.loads, Load, "a load, as ms.Force(…)"))
         bodies = turned_bodies(self.shell.rigid, self.supports)
         if len(bodies) > len(self.shell.rigid):
             put(self, "shell", dataclasses.replace(self.shell, rigid=bodies))
-        put(self, "stages", tuple(self.stages) or (Stage(),) * self._longest_history())
+        put(
+            self,
+            "stages",
+            several("model: stages", self.stages, Stage, "a Stage") or (Stage(),) * self._longest_history(),
+        )
         put(self, "local_axis", _direction("local_axis", self.local_axis))
-        put(self, "outputs", tuple(self.outputs))
+        put(self, "outputs", several("model: outputs", self.outputs, str, "the name of an output"))
         put(self, "rows", rows_of(self.shell, mirror_planes(self.supports, self.shell.rigid)))
         places = Places(mesh, self.rows.carriers, tuple(self.shell.rigid), self.shell.periodic, self.shell.images)
         constraints = resolve(places, self.supports, len(self.stages))
         put(self, "constraints", self.rows.constraints(constraints))
         put(self, "named_supports", named_supports(self.shell, places, self.supports))
-        put(self, "springs", tuple(self.springs))
+        put(self, "springs", on_groups("model: springs", self.springs, ElasticSupport, "a Spring or TorsionSpring"))
         put(self, "elastic", tuple(spring.applied(self.shell, places) for spring in self.springs))
         check_names(self.springs, [support.name for support in self.named_supports])
         put(self, "applied", tuple(load.applied(self.shell, self.rows) for load in self.loads))
+        instance("model: probes", self.probes, Mapping, 'a mapping of names to positions, as {"tip": (x, y, z)}')
         nodes = {}
         for name, position in self.probes.items():
             try:
@@ -322,8 +334,8 @@ class Model:
         return np.asarray(areas @ self.shell.mesh.points / areas.sum())
 
     def _longest_history(self) -> int:
-        histories = (getattr(owner, "history", None) for owner in (*self.loads, *self.supports))
-        lengths = [len(history) for history in histories if history is not None]
+        histories = [(one, getattr(one, "history", None)) for one in (*self.loads, *self.supports)]
+        lengths = [len(numbers(given, type(one).__name__)) for one, given in histories if given is not None]
         return max([self.field.stages, *lengths])
 
     def _amounts_at_the_ends(self) -> tuple[Amounts, ...]:
@@ -356,7 +368,7 @@ class Model:
 
 def _direction(where: str, value: ArrayLike) -> FloatArray:
     """A direction as three numbers."""
-    direction = np.asarray(value, dtype=float)
-    if direction.shape != (3,) or not np.isfinite(direction).all() or not direction.any():
+    direction = three_finite(value)
+    if direction is None or not direction.any():
         raise InputError(f"{where} is {value!r}; it must be three finite numbers, not all zero")
     return direction

@@ -258,22 +258,27 @@ def _of_regions(left: IntArray, names: Sequence[str]) -> str:
 def _name(number: int, group: Group) -> str:
     if isinstance(group, str):
         return group
-    if len(group) and all(isinstance(one, str) for one in group):
+    if _are_names(group):
         names = [str(one) for one in group]
         return ", ".join(names) if len(names) < 4 else f"{names[0]}, {names[1]}, … {names[-1]}"
     return f"regions[{number}]"
+
+
+def _are_names(group: Group) -> bool:
+    """Whether it is a sequence of names."""
+    return isinstance(group, Sequence) and bool(group) and all(isinstance(one, str) for one in group)
 
 
 def _members(mesh: Mesh, where: str, group: Group) -> IntArray:
     try:
         if isinstance(group, str):
             return mesh.elements_of(group)
-        if len(group) and all(isinstance(one, str) for one in group):
+        if _are_names(group):
             return np.unique(np.concatenate([mesh.elements_of(str(one)) for one in group]))
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
     numbers = np.asarray(group)
-    if not numbers.size:
+    if isinstance(group, Sequence) and not numbers.size:
         raise InputError(f"{where}: has no elements")
     if numbers.ndim != 1 or numbers.dtype.kind not in "iu":
         raise InputError(f"{where}: group is {group!r}; it must be an element group, several, or numbers of elements")
@@ -316,8 +321,6 @@ def _draft(shell: Made, region: Region | None, name: str, where: str, members: I
 
 
 def _check_layers(where: str, layers: Any, *others: Any) -> None:
-    if isinstance(layers, Layer) or not all(isinstance(layer, Layer) for layer in layers):
-        raise InputError(f"{where}: layers must be a list of Layer")
     for name, value in zip(("thickness", "material", "remanence"), others, strict=True):
         if len(layers) and value is not None:
             raise InputError(f"{where}: {name} is given beside layers; each layer has its own")

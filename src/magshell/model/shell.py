@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from magshell.arguments import instance, on_groups, sampling, several
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.errors import InputError, suggest
 from magshell.magnetics.remanence import Remanence
@@ -25,6 +26,7 @@ from magshell.model.repeated import Periodic, Repeated
 from magshell.model.rigid_body import RigidBody
 from magshell.model.thickness import Thickness
 from magshell.shell.elements import ELEMENTS, QUADRATIC
+from magshell.shell.elements.definition import ElementType
 
 STRETCHES = ("linear", "none", "plane-stress")
 
@@ -99,11 +101,18 @@ class Shell:
 
     def __post_init__(self) -> None:
         put = object.__setattr__
-        put(self, "regions", tuple(self.regions))
-        put(self, "layers", tuple(self.layers))
-        put(self, "hinges", tuple(self.hinges))
-        put(self, "rigid", tuple(self.rigid))
-        put(self, "repeated", tuple(self.repeated))
+        instance("shell: mesh", self.mesh, Mesh, "a Mesh: one of ms.mesh.rectangle(…) and the like, or ms.mesh.read(…)")
+        put(self, "regions", several("shell: regions", self.regions, Region, "a Region"))
+        put(self, "layers", several("shell: layers", self.layers, Layer, "a Layer"))
+        put(self, "hinges", on_groups("shell: hinges", self.hinges, Hinge, "a Hinge"))
+        put(self, "rigid", on_groups("shell: rigid", self.rigid, RigidBody, "a RigidBody"))
+        put(self, "repeated", on_groups("shell: repeated", self.repeated, Repeated, "a Cyclic or Periodic"))
+        instance("shell: micro_rotation", self.micro_rotation, (bool, np.bool_), "True or False")
+        self._check_functions("shell", self)
+        for number, region in enumerate(self.regions):
+            self._check_functions(f"regions[{number}]", region)
+        for number, layer in enumerate(self.layers):
+            self._check_functions(f"layers[{number}]", layer)
         if self.density is not None:
             put(self, "density", positive("shell: density", self.density, "kg/m^3"))
         if self.thickness is not None and not callable(self.thickness):
@@ -118,6 +127,7 @@ class Shell:
             if self.element not in ELEMENTS:
                 raise InputError(f"shell: element is '{self.element}'. {suggest(self.element, ELEMENTS)}")
             put(self, "element", ELEMENTS[self.element])
+        instance("shell: element", self.element, ElementType, f"one of {', '.join(map(repr, ELEMENTS))}")
         if self.mesh.triangles.any():
             if self.element.with_triangles is None:
                 able = " or ".join(f"'{name}'" for name, element in ELEMENTS.items() if element.with_triangles)
@@ -135,6 +145,16 @@ class Shell:
                 self._check_theory_of_layers(draft.where)
         put(self, "_heights", heights_of(self, self._drafts))
         put(self, "_drafts", completed_drafts(self._drafts, self._heights, self.micro_rotation))
+
+    def _check_functions(self, where: str, made: Shell | Region | Layer) -> None:
+        """Refuse remanence and thickness that are no functions of mesh and points."""
+        if made.remanence is not None or not isinstance(made, Region):
+            sampling(f"{where}: remanence", made.remanence, "ms.remanence", "a remanence (T)")
+        if callable(made.thickness):
+            sampling(f"{where}: thickness", made.thickness, "ms.thickness", "a thickness (m)")
+        layers = several(f"{where}: layers", made.layers, Layer, "a Layer") if isinstance(made, Region) else ()
+        for number, layer in enumerate(layers):
+            self._check_functions(f"{where}: layers[{number}]", layer)
 
     def _check_theory_of_layers(self, where: str) -> None:
         if not self.micro_rotation:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
+from magshell.arguments import instance, real, shown
 from magshell.errors import InputError, suggest
 from magshell.multipliers import spaced
 
@@ -57,10 +58,14 @@ class Stage:
     side: int = 1
 
     def __post_init__(self) -> None:
+        instance("stage: name", self.name, str, "a text")
         where = f"stage '{self.name}'" if self.name else "stage"
         if self.control not in CONTROLS:
             raise InputError(f"{where}: control is '{self.control}'. {suggest(self.control, CONTROLS)}")
-        stops = tuple(float(stop) for stop in spaced(self.stops, 1.0, where))
+        stops = spaced(self.stops, 1.0, where)
+        if isinstance(stops, str) or not isinstance(stops, Iterable):
+            raise InputError(f"{where}: stops is {shown(stops)}; it must be a list of load factors, or how many")
+        stops = tuple(real(f"{where}: stops[{number}]", stop) for number, stop in enumerate(stops))
         if any(not 0.0 < stop <= 1.0 for stop in stops) or any(b <= a for a, b in pairwise(stops)):
             raise InputError(f"{where}: stops are {list(stops)}; they must rise, from above 0 to at most 1")
         object.__setattr__(self, "stops", stops)

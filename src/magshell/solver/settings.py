@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from numbers import Integral
 
+from magshell.arguments import instance, real
 from magshell.errors import InputError
 
 
@@ -40,9 +42,15 @@ class Settings:
 
     def __post_init__(self) -> None:
         for entry in fields(self):
-            value = getattr(self, entry.name)
-            if isinstance(value, int | float) and not isinstance(value, bool) and not 0 < value < float("inf"):
-                raise InputError(f"solver: {entry.name} is {value}; it must be positive and finite")
+            value, where = getattr(self, entry.name), f"solver: {entry.name}"
+            if isinstance(entry.default, bool):
+                instance(where, value, bool, "True or False")
+            elif isinstance(entry.default, float | int) and not 0 < real(where, value) < float("inf"):
+                raise InputError(f"{where} is {value}; it must be positive and finite")
+            elif isinstance(entry.default, str):
+                instance(where, value, str, "the name of a solver")
+            if entry.type == "int":
+                instance(where, value, Integral, "a whole number")
         if self.tolerance >= 1e-2:
             raise InputError(f"solver: tolerance is {self.tolerance:g}; a result needs less than 1e-2")
         if not self.first_step <= self.largest_step <= 1.0:

@@ -6,6 +6,7 @@ import logging
 import time
 from collections.abc import Sequence
 
+from magshell.arguments import instance
 from magshell.equations.discretisation import Discretisation
 from magshell.linalg import make_solver, nested_dissection
 from magshell.model.model import Model
@@ -38,7 +39,9 @@ def solve(model: Model, settings: Settings | None = None, observers: Sequence[Ob
     SolveError
         The path cannot be followed to its end; `.reason` says why, `.path` holds every converged step.
     """
-    settings = settings or Settings()
+    instance("solve: model", model, Model, "a Model")
+    settings = Settings() if settings is None else settings
+    instance("solve: settings", settings, Settings, "Settings, as ms.Settings(tolerance=1e-9)")
     linear_solver = make_solver(settings.linear_solver)
     return resume(Path(model, Discretisation(model, nested_dissection), settings, linear_solver.name), observers)
 

@@ -21,7 +21,8 @@ from magshell.equations.discretisation import Discretisation
 from magshell.equations.instant import Increment, Instant
 from magshell.evaluation.reactions import moments_of
 from magshell.model.course import Loading
-from magshell.model.rigid import FreeTurn, direction
+from magshell.model.doubts.needles import UNSTABLE, unheld
+from magshell.model.rigid import FreeTurn
 from magshell.shell.rotation import exponential, matrix
 from magshell.shell.state import State
 from magshell.shell.unknowns import COLUMNS, COMPONENTS
@@ -36,10 +37,6 @@ MOST = 100
 NEUTRAL = 1e-7
 # Of the size of the body: by how much a turned body may miss its supports.
 MISSED = 1e-9
-UNSTABLE = (
-    "the body stands opposite to the field, an unstable equilibrium that it does not leave by itself. Tilt the field "
-    "by a degree to see it turn"
-)
 
 
 def turned(discretisation: Discretisation, loading: Loading) -> State:
@@ -87,11 +84,7 @@ class _Turning:
             sizes, along = np.abs(values), vectors.T @ g
             scale = max(size, float(sizes.max()))
             if np.abs(g).max() <= NEUTRAL * scale and sizes.min() <= NEUTRAL * scale:
-                axis = direction(self.turn.axes.T @ vectors[:, int(sizes.argmin())])
-                raise StepFailure(
-                    f"the field exerts no torque about {axis}, so that nothing holds the rotation about it. Hold it by "
-                    "a support or a spring, or magnetise the body across the axis"
-                )
+                raise StepFailure(unheld(self.turn.axes.T @ vectors[:, int(sizes.argmin())]))
             step = -vectors @ (along / np.maximum(sizes, NEUTRAL * scale))
             length = float(np.linalg.norm(step))
             if length <= ROUND_OFF:

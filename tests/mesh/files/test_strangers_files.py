@@ -16,7 +16,8 @@ from hypothesis import strategies as st
 from processes import PATIENCE
 
 import magshell as ms
-from magshell.errors import InputError
+from magshell.errors import InputError, suggest
+from magshell.mesh.files.names import named
 from magshell.mesh.files.scripts import put_alone
 
 DATA = pathlib.Path(__file__).parent / "data"
@@ -242,3 +243,11 @@ def test_whatever_is_let_through_runs_nothing(words, between, tmp_path_factory):
     finally:
         os.chdir(before)
     assert not list(folder.rglob("ran"))
+
+
+def test_both_groups_are_suggested_whose_names_become_the_same() -> None:
+    """`rim (a)` and `rim [a]` become `rim _a_` and `rim _a_-edges`: who writes an old name is told of both."""
+    new = sorted(named(({}, {"rim (a)": 0, "rim [a]": 0}, {}))[0].values())
+    for old in ("rim (a)", "rim [a]"):
+        assert suggest(old, [*new, "top"]).startswith(f"Did you mean '{new[0]}' or '{new[1]}'?")
+    assert suggest("tob", [*new, "top"]).startswith("Did you mean 'top'?")

@@ -13,6 +13,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from magshell.arguments import real
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
 from magshell.keys import Key
@@ -44,9 +45,9 @@ class Coil(Shape):
     is_coil = True
 
     def _check_current(self) -> None:
-        if not np.isfinite(self.current) or not self.current:
+        if not np.isfinite(real(f"{self.kind}: current", self.current, "a current (A)")) or not self.current:
             raise InputError(f"{self.kind}: current is {self.current!r} A; it must be finite and not zero")
-        if isinstance(self.turns, bool) or self.turns != int(self.turns) or self.turns < 1:
+        if not real(f"{self.kind}: turns", self.turns).is_integer() or self.turns < 1:
             raise InputError(f"{self.kind}: turns is {self.turns!r}; it must be a whole number, at least 1")
 
     @property

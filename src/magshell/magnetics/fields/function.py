@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 
+from magshell.arguments import real
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
 from magshell.magnetics.fields.differences import STEP, general
@@ -51,7 +52,8 @@ class FunctionField(MovingField):
     def __post_init__(self) -> None:
         if not callable(self.function) or not (self.gradient is None or callable(self.gradient)):
             raise InputError(f"{self.name}: function and gradient must be functions of positions (n, 3)")
-        if not 0.0 < self.length < np.inf:
+        self.check_motion()
+        if not 0.0 < real(f"{self.name}: length", self.length, "a length (m)") < np.inf:
             raise InputError(f"{self.name}: length is {self.length!r} m; it must be positive")
 
     def own(self, points: FloatArray, second: bool) -> Values:

@@ -52,6 +52,7 @@ class GradientField(MovingField):
     name: str = "gradient"
 
     def __post_init__(self) -> None:
+        self.check_motion()
         object.__setattr__(self, "gradient", _static(self.gradient, self.name))
         object.__setattr__(self, "flux_density", vector(self.flux_density, f"{self.name}: flux_density"))
         object.__setattr__(self, "centre", vector(self.centre, f"{self.name}: centre"))

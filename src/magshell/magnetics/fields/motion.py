@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from magshell.arguments import instance
 from magshell.arrays import FloatArray, three_finite
 from magshell.errors import InputError
 from magshell.magnetics.fields.field import Field, Values
@@ -130,6 +131,17 @@ class MovingField(Field):
     """
 
     motion: Motion
+
+    def check_motion(self) -> None:
+        """Refuse a motion or a name of another class.
+
+        Raises
+        ------
+        InputError
+            There is one.
+        """
+        instance("field: name", self.name, str, "a text")
+        instance(f"{self.name}: motion", self.motion, Motion, "a Motion")
 
     @abstractmethod
     def own(self, points: FloatArray, second: bool) -> Values:

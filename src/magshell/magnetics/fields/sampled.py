@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from magshell.arguments import instance, shown
 from magshell.arrays import FloatArray
 from magshell.errors import InputError
 from magshell.magnetics.fields.field import FieldUnknown, Values
@@ -50,10 +51,12 @@ class SampledField(MovingField):
     name: str = "sampled"
 
     def __post_init__(self) -> None:
+        self.check_motion()
+        instance(f"{self.name}: axes", self.axes, (Sequence, np.ndarray), "three sequences of coordinates")
         axes = tuple(self._coordinates(number, values) for number, values in enumerate(self.axes))
         if len(axes) != 3:
             raise InputError(f"{self.name}: there are {len(axes)} axes; a grid has three")
-        B, shape = np.array(self.flux_density, dtype=float), (*map(len, axes), 3)
+        B, shape = self._numbers(), (*map(len, axes), 3)
         if B.shape != shape:
             raise InputError(f"{self.name}: flux_density has the shape {B.shape}; the axes make it {shape}")
         bad = np.argwhere(~np.isfinite(B).all(axis=-1))
@@ -67,8 +70,21 @@ class SampledField(MovingField):
         object.__setattr__(self, "axes", axes)
         object.__setattr__(self, "flux_density", B)
 
+    def _numbers(self) -> FloatArray:
+        try:
+            return np.array(self.flux_density, dtype=float)
+        except (TypeError, ValueError):
+            raise InputError(
+                f"{self.name}: flux_density is {shown(self.flux_density)}; it must be numbers (T)"
+            ) from None
+
     def _coordinates(self, number: int, values: ArrayLike) -> FloatArray:
-        axis = np.array(values, dtype=float).reshape(-1)
+        try:
+            axis = np.array(values, dtype=float).reshape(-1)
+        except (TypeError, ValueError):
+            raise InputError(
+                f"{self.name}: the coordinates along X{number + 1} are {shown(values)}; they must be numbers (m)"
+            ) from None
         if not np.isfinite(axis).all() or np.any(np.diff(axis) <= 0.0):
             raise InputError(f"{self.name}: the coordinates along X{number + 1} must be finite and increase")
         if len(axis) <= DEGREE:

@@ -11,8 +11,12 @@ along the angle θ: k = 1, 2, … has 2 k poles inside, k = 1 a field that is un
 
 from __future__ import annotations
 
+from numbers import Integral
+
 import numpy as np
 
+from magshell.arguments import instance, real
+from magshell.arrays import three_finite
 from magshell.errors import InputError
 from magshell.keys import Key
 from magshell.magnetics.fields.coils import TURNS, Loop
@@ -46,6 +50,7 @@ def helmholtz(radius: float, current: float, turns: int = 1) -> tuple[Source, ..
     turns : int
         Of each loop.
     """
+    real("helmholtz: radius", radius, "a length (m)")
     loop = Loop(2.0 * radius, current, turns)
     return tuple(Source(loop, (0.0, 0.0, place * radius)) for place in (-0.5, 0.5))
 
@@ -62,6 +67,8 @@ def maxwell(radius: float, current: float, turns: int = 1) -> tuple[Source, ...]
     turns : int
         Of each loop.
     """
+    real("maxwell: radius", radius, "a length (m)")
+    real("maxwell: current", current, "a current (A)")
     half = 0.5 * np.sqrt(3.0) * radius
     pair = ((-1.0, -half), (1.0, half))
     return tuple(Source(Loop(2.0 * radius, sign * current, turns), (0.0, 0.0, place)) for sign, place in pair)
@@ -90,6 +97,12 @@ def halbach(
     InputError
         Fewer than three magnets, magnets that overlap, numbers that are not positive.
     """
+    for name, whole in (("count", count), ("order", order)):
+        instance(f"halbach: {name}", whole, Integral, "a whole number")
+    for name, value, wanted in (("radius", radius, "a length (m)"), ("remanence", remanence, "a number (T)")):
+        real(f"halbach: {name}", value, wanted)
+    if three_finite(sides) is None:
+        raise InputError(f"halbach: sides is {sides!r}; it must be three lengths (m)")
     if not 3 <= count <= MOST_MAGNETS:
         raise InputError(f"halbach: count is {count}; a ring has from 3 to {MOST_MAGNETS} magnets")
     if order < 1:

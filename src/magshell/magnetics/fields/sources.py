@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from magshell.arguments import real
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.keys import Key
@@ -137,7 +138,8 @@ class MagnetField(MovingField):
         if not sources:
             raise InputError(f"{self.name}: there is no magnet and no coil")
         object.__setattr__(self, "sources", sources)
-        if self.spacing is not None and not 0.0 < self.spacing < np.inf:
+        self.check_motion()
+        if self.spacing is not None and not 0.0 < real(f"{self.name}: spacing", self.spacing, "a length (m)") < np.inf:
             raise InputError(f"{self.name}: spacing is {self.spacing!r} m; it must be positive")
         lattice = None if self.spacing is None else Lattice(self._flux_density, self.spacing)
         object.__setattr__(self, "_lattice", lattice)

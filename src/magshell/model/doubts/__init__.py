@@ -10,7 +10,7 @@ from magshell.magnetics.remanence.sampled import averaged
 from magshell.mesh.geometry import centres
 from magshell.mesh.quality import worst
 from magshell.model import coupling_limit, own_field_limit, symmetry
-from magshell.model.doubts import loads, parts, rotations, triangles
+from magshell.model.doubts import loads, mesh_error, needles, parts, rotations, triangles
 from magshell.model.doubts.asked import Asked
 from magshell.model.doubts.figures import Figures, Whole, figures_of
 from magshell.model.shell import Shell
@@ -43,6 +43,7 @@ def _doubts(model: Asked) -> Iterator[str]:
     yield from _of_places(shell)
     yield from loads.doubts(model, loads.strength(model, figures))
     yield from rotations.doubts(model)
+    yield from needles.doubts(model)
     yield from symmetry.broken(model)
     if model.constraints.fixed[:, :3].all():
         yield "the supports hold every node: the displacement is given everywhere, nothing is left to move"
@@ -50,6 +51,7 @@ def _doubts(model: Asked) -> Iterator[str]:
     worst_corner = worst(shell.mesh)["scaled_jacobian"]
     if worst_corner.value < 0.2:
         yield f"element {worst_corner.element} is badly shaped (scaled Jacobian {worst_corner.value:.2g})"
+    yield from mesh_error.doubts(model)
     if not model.probe_nodes:
         yield "there are no probes: the history will hold the load only"
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
 from magshell.arrays import FloatArray
 from magshell.model.constraints import Constraints
+from magshell.model.course import Course
+from magshell.model.elastic import ElasticSupport
+from magshell.model.rigid import FreeTurn
 from magshell.model.symmetry import Mirrored
 
 
@@ -23,5 +26,10 @@ class Asked(Mirrored, Protocol):
     def largest_field(self) -> float: ...
     @property
     def forces_at_rest(self) -> tuple[FloatArray, ...]: ...
+    @property
+    def springs(self) -> Sequence[ElasticSupport]: ...
+    @property
+    def turns(self) -> tuple[FreeTurn, ...]: ...
+    def course(self, stage: int) -> Course: ...
     @property
     def probe_nodes(self) -> Mapping[str, int]: ...

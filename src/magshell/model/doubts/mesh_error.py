@@ -16,6 +16,7 @@ acts on rigid bodies is not counted.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -32,6 +33,8 @@ from magshell.shell.elements import QUADRATIC
 
 STEPS = (0.001, 0.003, 0.01, 0.03, 0.1)
 """Errors that are told: each stands for all from the one before it."""
+COARSE = STEPS[-1]
+"""Error from which on a mesh is called coarse."""
 MOST = 0.9
 """Share of the elements that are no larger than the size that counts."""
 
@@ -57,6 +60,13 @@ def expected_error(model: Asked) -> float | None:
     curvature = 0.004 * (largest**2 / (figures.radius * figures.thickest)) ** 1.5
     width = 0.03 * (2.0 * ratio) ** 2 / elements_across(mesh, mirrored) ** 5
     return bending + curvature + width
+
+
+def doubts(model: Asked) -> Iterator[str]:
+    """Whether the mesh is coarse."""
+    error = expected_error(model)
+    if error is not None and error > COARSE:
+        yield f"the mesh is coarse: its expected error is {in_words(error)}. Take smaller elements"
 
 
 def in_words(error: float | None) -> str:

@@ -31,6 +31,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from magshell.arguments import instance
 from magshell.arrays import FloatArray, IntArray
 from magshell.errors import InputError
 from magshell.keys import HISTORY, Key
@@ -89,6 +90,7 @@ class Moment(TotalLoad):
     def applied(self, shell: Shell, rows: Rows) -> Applied:
         """The load on a mesh."""
         with self.located():
+            instance("follower", self.follower, (bool, np.bool_), "True or False")
             if self.follower and not shell.micro_rotation:
                 raise InputError(
                     "a follower turns with the micro-rotation, which this shell does not have; leave follower out: "
