@@ -27,7 +27,7 @@ from magshell.output.marks import (
 from magshell.output.scene import viewing_axes
 from magshell.output.setup import INCHES, _legend, draw_setup, setup_scene, tints
 from magshell.output.style import DPI
-from magshell.output.turns import field_turns, turn_marks
+from magshell.output.turns import field_turns, source_turns, turn_marks
 
 LENGTH, WIDTH = 20e-3, 6e-3
 RUBBER = ms.MicropolarNeoHookean(303e3, 7300e3, 30.3e3, 1e-4)
@@ -215,6 +215,26 @@ def test_prescribed_rotations_are_arcs_about_their_axis():
     assert [mark.letters[0][0] for mark in (turn, twist)] == ["60°", "90°"]
     assert [mark.name for mark in support_marks(model, LENGTH, AXES)][:1] == ["left: turned by -60 deg"]
     assert turn_marks(strip(), LENGTH) == []
+
+
+def test_turns_of_magnets_are_arcs_about_their_axis():
+    """At the point of the axis that moves with the magnet, in each stage that turns it; none far from the part."""
+    centre, rise = np.array((LENGTH, 0.0, LENGTH)), np.array((0.0, 0.0, 5e-3))
+
+    def turning(centre):
+        motion = ms.Motion((1, 1, 1), (rise, rise, rise), (0, 3, 0), (0.0, np.pi / 2, -np.pi / 6), tuple(centre))
+        source = ms.fields.Source(ms.fields.Dipole((0, 0, 0.1)), (0, 0, 2 * LENGTH))
+        still = ms.MagnetField([source], ms.Motion((1, 1, 1)), name="still")
+        both = still + ms.MagnetField([source], motion, name="arm")
+        return strip(field=both, stages=[ms.Stage()] * 3)
+
+    extent = strip().shell.mesh.points
+    first, second = source_turns(turning(centre), extent, LENGTH)
+    assert [mark.name for mark in (first, second)] == ["arm turns by 90° in stage 2", "arm turns by -120° in stage 3"]
+    for mark, angle in ((first, np.pi / 2), (second, -2 * np.pi / 3)):
+        assert mark.places[0] == pytest.approx(centre + rise)
+        assert end_of(mark) * np.sign(mark.vectors[0] @ (0, 1, 0)) == pytest.approx(angle)
+    assert source_turns(turning(100 * centre), extent, LENGTH) == []
 
 
 def test_turns_of_the_field_are_arcs_at_its_arrow():

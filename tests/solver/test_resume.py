@@ -17,6 +17,7 @@ from magshell.solver.waypoint import Waypoint
 from solver.arches import arch, to_the_crown_at
 from solver.models import Record, arm, in_parts, strip
 from solver.test_branching import along, buckling
+from solver.test_own_field import two_strips
 from solver.test_stages import strip as heavy_strip
 
 
@@ -35,6 +36,7 @@ CASES = {
     "stages": (lambda: heavy_strip(gravity=(1, 1), history=(0, 1)), Settings()),
     "branches": (lambda: buckling([Stage(), along(1), along(-1)]), Settings()),
     "joints, hinges, a magnet on springs": (folded_arm, Settings()),
+    "the body's own field": (lambda: two_strips(-20e-3, Stage(stops=2)), Settings()),
     "parts of several layers": (lambda: in_parts(arm()), Settings()),
 }
 

@@ -98,6 +98,16 @@ class Course(NamedTuple):
         change = self._told(lambda: self.field.rate(now.drives, drives, self.centre[None]))
         return Loading(change, end.loads - start.loads, end.held - start.held, drives)
 
+    def reported(self, load_factor: float, flux_density: FloatArray) -> FloatArray:
+        """The flux density (3,) of `at` as results have it: NaN where the field is not known at the centre."""
+        if self.field.is_uniform or np.any(flux_density):
+            return flux_density
+        try:
+            self.field.at(self.amounts(load_factor).drives, self.centre[None], second=False)
+        except FieldUnknown:
+            return np.full(3, np.nan)
+        return flux_density
+
     @staticmethod
     def _told(values: Callable[[], Values]) -> FloatArray:
         """Flux density (3,) of values at the centre; zero where the field is not known there."""

@@ -28,7 +28,7 @@ from magshell.mesh.geometry import unit
 from magshell.output.copies import between
 from magshell.output.labels import bar_title
 from magshell.output.scene import Camera, axes_from, best_axes, darkroom, deformed, field_arrow, fit, lettered
-from magshell.output.shape import INCHES, SCENE, colour_bar, colour_scale, shown_values, triad
+from magshell.output.shape import INCHES, SCENE, colour_bar, colour_scale, field_title, shown_values, triad
 from magshell.output.skin import Placed, Skin, skin_of
 from magshell.output.sources import extent as sources_extent
 from magshell.output.sources import pieces
@@ -149,7 +149,7 @@ def film(
     with darkroom(seen, shape, quick=True) as expose:
 
         def picture(frame: Frame) -> Image:
-            number, field, drives = frame.step.number, frame.step.flux_density, frame.step.drives
+            number, field, drives = frame.step.number, path.flux_density(frame.step), frame.step.drives
             body, shown = placed(number), values[number]
             if frame.later is not None:
                 after = frame.later.number
@@ -158,7 +158,7 @@ def film(
                     one + frame.share * (other - one)
                     for one, other in (
                         (shown, values[after]),
-                        (field, frame.later.flux_density),
+                        (field, path.flux_density(frame.later)),
                         (drives, frame.later.drives),
                     )
                 )
@@ -390,10 +390,8 @@ def _letter(picture: Image, name: str, field: FloatArray, head: FloatArray | Non
     points = dpi / 72
     draw = ImageDraw.Draw(picture)
     plain = findfont(FontProperties(family="DejaVu Sans"))
-    size = 1e3 * float(np.linalg.norm(field))
-    text = f"|B| = {size:.4g} mT" if size > 0 else "no field"
     place = 0.035 * picture.width, 0.06 * picture.height
-    draw.text(place, text, INK, ImageFont.truetype(plain, 20 * points), anchor="lm")
+    draw.text(place, field_title(field), INK, ImageFont.truetype(plain, 20 * points), anchor="lm")
     right = 0.86 * picture.width, 0.06 * picture.height
     draw.text(right, name, "#6b7280", ImageFont.truetype(plain, 13 * points), anchor="rm")
     if head is not None:

@@ -68,7 +68,9 @@ def write_buckling(buckling: Buckling, directory: str | os.PathLike[str]) -> lis
     for mode in buckling.modes:
         name = f"buckling/mode-{mode.number:02d}.vtu"
         write_mode(folder / name, buckling.path.discretisation, mode)
-        numbers = [repr(float(value)) for value in (mode.load_factor, *mode.flux_density)]
+        course = buckling.path.model.course(mode.stage)
+        field = course.reported(mode.load_factor, mode.flux_density).tolist()
+        numbers = [repr(float(mode.load_factor)), *("" if np.isnan(B) else repr(B) for B in field)]
         rows.append(csv_line([str(mode.number), *numbers, name, repr(float(mode.strain)), repr(float(mode.rotation))]))
     write_atomically(folder / TABLE, "".join(rows).encode())
     return [

@@ -61,7 +61,10 @@ class CriticalWriter(Observer):
         write_mode(self.file.parent / name, self._discretisation, point)
         if not self.file.exists():
             write_atomically(self.file, csv_line(HEADING).encode())
-        numbers = [repr(float(value)) for value in (point.load_factor, *point.flux_density, point.arc_length)]
+        course = self._discretisation.model.course(point.stage)
+        field = course.reported(point.load_factor, point.flux_density).tolist()
+        told = ["" if np.isnan(B) else repr(B) for B in field]
+        numbers = [repr(float(point.load_factor)), *told, repr(float(point.arc_length))]
         pivots = ["" if count is None else str(count) for count in point.negative_pivots]
         append_line(self.file, csv_line([str(point.number), point.kind, str(point.stage + 1), *numbers, *pivots, name]))
 

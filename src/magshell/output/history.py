@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 class HistoryWriter(Observer):
     """Write the field, the displacement of every probe and the numbers of all series at every converged step.
 
-    Columns: `load_factor`, `B1,B2,B3` (T), then `NAME.u1,NAME.u2,NAME.u3` (m) per probe, in the order of
-    the model's probes, then `stage` (from 1), `arc_length` and `negative_pivots` (0: stable; empty where the linear
-    solver cannot tell), then the columns of `magshell.evaluation.series`: reactions, energies, work and torque. Numbers
-    are written so that reading them gives the same double back.
+    Columns: `load_factor`, `B1,B2,B3` (T, empty where not known), then `NAME.u1,NAME.u2,NAME.u3` (m) per probe, in the
+    order of the model's probes, then `stage` (from 1), `arc_length` and `negative_pivots` (0: stable; empty where the
+    linear solver cannot tell), then the columns of `magshell.evaluation.series`: reactions, energies, work and torque.
+    Numbers are written so that reading them gives the same double back.
 
     Parameters
     ----------

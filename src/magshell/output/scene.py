@@ -305,7 +305,7 @@ def arrow_body(ends: FloatArray) -> Any:
 def field_arrow(field: FloatArray, extent: FloatArray, axes: FloatArray) -> FloatArray | None:
     """Tail and head of the field arrow, to the left of everything on the picture."""
     strength = np.linalg.norm(field)
-    if strength == 0:
+    if not strength > 0:  # NaN: not known
         return None
     seen = extent @ axes.T
     low, high = seen.min(axis=0), seen.max(axis=0)

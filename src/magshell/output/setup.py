@@ -48,7 +48,7 @@ from magshell.output.sources import extent as sources_extent
 from magshell.output.sources import place as place_sources
 from magshell.output.style import DPI, GREY, INK, PALE, TEXT, deliver
 from magshell.output.tessellation import Tessellation, own_nodes
-from magshell.output.turns import field_turns, turn_marks
+from magshell.output.turns import field_turns, source_turns, turn_marks
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -175,6 +175,7 @@ def setup_scene(model: Model, pixels: tuple[int, int], template: bool = False, b
             *repeated_marks(model, size, axes),
             *body_marks(model, size, axes),
             *turn_marks(model, size),
+            *source_turns(model, extent, size),
             *probe_marks(model, size, axes),
         ]
     stages = [] if template or bare else [pieces(model.field, now) for now in model.field.ends(len(model.stages))]

@@ -80,7 +80,7 @@ def draw_shape(
     (values,) = shown_values(path, [shown], output, component, skin)
     colours = ScalarMappable(*colour_scale(values))
     rgb = colours.to_rgba(values, bytes=True)[:, :3]
-    field, sources = shown.flux_density, pieces(path.model.field, shown.drives)
+    field, sources = path.flux_density(shown), pieces(path.model.field, shown.drives)
     pixels = (round(DPI * INCHES[0] * SCENE[2]), round(DPI * INCHES[1] * SCENE[3]))
     placed = skin.placed(converged(path.discretisation, shown))
     scene, seen, arrow = draw(path.model.shell, placed, rgb, field, sources, pixels, camera)
@@ -90,9 +90,7 @@ def draw_shape(
     axes.set_axis_off()
     axes.imshow(scene, extent=(0, 1, 0, 1), aspect="auto", interpolation="none")
     colour_bar(figure, colours, bar_title(output, component))
-    size = 1e3 * float(np.linalg.norm(field))
-    title = rf"$|B^\mathrm{{ext}}|$ = {size:.4g} mT" if size > 0 else "no field"
-    figure.text(0.035, 0.94, title, va="center", **(TEXT | {"fontsize": 20}))
+    figure.text(0.035, 0.94, field_title(field, r"$|B^\mathrm{ext}|$"), va="center", **(TEXT | {"fontsize": 20}))
     if arrow is not None:
         _label_arrow(axes, seen.on_picture(arrow))
     triad(axes, seen.axes)
@@ -145,6 +143,14 @@ def colour_scale(values: AnyArray) -> tuple[Any, Any]:
     if min(-low, high) > 0.1 * largest:
         return Normalize(-largest, largest), colormaps["coolwarm"]
     return Normalize(low, high), colormaps["viridis"]
+
+
+def field_title(flux_density: FloatArray, symbol: str = "|B|") -> str:
+    """The strength of the field above a picture; the flux density is NaN where it is not known."""
+    size = 1e3 * float(np.linalg.norm(flux_density))
+    if np.isnan(size):
+        return "field not known at the centre"
+    return f"{symbol} = {size:.4g} mT" if size > 0 else "no field"
 
 
 def _label_arrow(axes: Any, ends: FloatArray) -> None:

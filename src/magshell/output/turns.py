@@ -1,4 +1,4 @@
-"""Rotations in a picture of the problem: of groups that are turned, of held sections, and of the field."""
+"""Rotations in a picture of the problem: of groups that are turned, held sections, the field, magnets and coils."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from magshell.arrays import FloatArray
-from magshell.magnetics.fields import UniformField
+from magshell.magnetics.fields import MagnetField, UniformField
 from magshell.mesh.geometry import unit
 from magshell.model.support import frame_about
 from magshell.output.marks import SUPPORTS, Mark, Solids
+from magshell.output.sources import REACH
 from magshell.output.style import ACCENT
 
 if TYPE_CHECKING:
@@ -47,6 +48,25 @@ def field_turns(model: Model, arrows: Sequence[Mark], size: float) -> list[Mark]
         _arc(f"field turns by {degrees(angle)} in stage {stage + 1}", ACCENT, tail, axis, start, angle, size)
         for stage, axis, start, angle in _turned(model)
     ]
+
+
+def source_turns(model: Model, part: FloatArray, size: float) -> list[Mark]:
+    """An arc for each stage that turns magnets or coils, about their axis, at the point of it that moves with them.
+
+    Those far from the points (n, 3) of the part are left out, as their sources are.
+    """
+    middle = 0.5 * (part.min(axis=0) + part.max(axis=0))
+    marks = []
+    for field in getattr(model.field, "fields", [model.field]):
+        if not isinstance(field, MagnetField) or field.motion.rotation_axis is None:
+            continue
+        axis = np.asarray(field.motion.rotation_axis)
+        for stage, (before, after) in enumerate(pairwise(field.ends(len(model.stages)))):
+            angle, pivot = float((after - before)[-1]), field.pivot(before)
+            if angle and np.linalg.norm(pivot - middle) < REACH * size:
+                words = f"{field.name} turns by {degrees(angle)} in stage {stage + 1}"
+                marks.append(_arc(words, ACCENT, pivot, axis, frame_about(axis)[1], angle, size))
+    return marks
 
 
 def _turned(model: Model) -> Iterator[tuple[int, FloatArray, FloatArray, float]]:

@@ -6,6 +6,8 @@ import threading
 from collections.abc import Sequence
 from itertools import pairwise
 
+import numpy as np
+
 from magshell.equations.discretisation import Discretisation
 from magshell.evaluation.converged import Converged, Reached, converged
 from magshell.evaluation.series import Number, columns, evaluated
@@ -70,7 +72,9 @@ class History:
         self._last = reached.acting
         u = [step.state.u[node].tolist() for node in self._discretisation.model.probe_nodes.values()]
         of_path = [step.stage + 1, float(step.arc_length), step.negative_pivots]
-        head = [float(step.load_factor), *map(float, step.flux_density), *(number for one in u for number in one)]
+        course = self._discretisation.model.course(step.stage)
+        field = [None if np.isnan(B) else float(B) for B in course.reported(step.load_factor, step.flux_density)]
+        head = [float(step.load_factor), *field, *(number for one in u for number in one)]
         return [*head, *of_path, *evaluated(reached)]
 
     def _before(self, step: Step) -> tuple[Acting | None, Work]:

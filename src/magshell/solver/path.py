@@ -32,7 +32,7 @@ from magshell.solver.waypoint import Waypoint
 
 
 class Probe(NamedTuple):
-    """A node along the path: load_factor (n,), flux_density (n, 3) in T, displacement u (n, 3) in m."""
+    """A node along the path: load_factor (n,), flux_density (n, 3) in T (or NaN), displacement u (n, 3) in m."""
 
     load_factor: FloatArray
     flux_density: FloatArray
@@ -149,7 +149,7 @@ class Path:
         """
         node = self._node(name)
         factors = np.array([step.load_factor for step in self.steps])
-        flux_density = np.array([step.flux_density for step in self.steps])
+        flux_density = np.array([self.flux_density(step) for step in self.steps])
         return Probe(factors, flux_density, np.array([step.state.u[node] for step in self.steps]))
 
     @cached_property
@@ -204,6 +204,10 @@ class Path:
         """What acts on the shell at a step."""
         return self.courses[step.stage].at(step.load_factor)
 
+    def flux_density(self, at: Step | CriticalPoint) -> FloatArray:
+        """The field (3,) at the shell's centre, T, at a step or critical point; NaN where it is not known there."""
+        return self.courses[at.stage].reported(at.load_factor, at.flux_density)
+
     def _node(self, name: str) -> int:
         if name in self.model.probe_nodes:
             return self.model.probe_nodes[name]
@@ -235,7 +239,7 @@ class Path:
                     "kind": point.kind,
                     "stage": point.stage + 1,
                     "load_factor": point.load_factor,
-                    "flux_density": point.flux_density.tolist(),
+                    "flux_density": self.flux_density(point).tolist(),
                 }
                 for point in self.critical_points
             ],

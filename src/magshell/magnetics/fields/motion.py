@@ -168,6 +168,10 @@ class MovingField(Field):
         turn, centre = self._turn(amounts[4]), self._centre
         return turn, centre + amounts[1:4] - turn @ centre
 
+    def pivot(self, amounts: FloatArray) -> FloatArray:
+        """The point (3,) of the axis of rotation that moves with the displacement, m."""
+        return np.asarray(self._centre + amounts[1:4])
+
     def at(self, amounts: FloatArray, points: FloatArray, second: bool = True) -> Values:
         return self._unscaled(amounts, points, second, float(amounts[0]))
 

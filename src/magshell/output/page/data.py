@@ -80,7 +80,8 @@ def collect(path: Path, steps: Sequence[Step], color: str, advance: Callable[[fl
         outputs.append(about)
     drawn, of_sources = sources(path, steps)
     arrays |= of_sources
-    magnitudes = [float(np.linalg.norm(step.flux_density)) for step in steps]
+    fields = [_known(path.flux_density(step)) for step in steps]
+    magnitudes = [None if B is None else float(np.linalg.norm(B)) for B in fields]
     header = {
         "outputs": outputs,
         "colour": f"{first.name} {_column(first, component)}",
@@ -95,13 +96,13 @@ def collect(path: Path, steps: Sequence[Step], color: str, advance: Callable[[fl
                 "number": step.number,
                 "stage": step.stage + 1,
                 "load_factor": float(step.load_factor),
-                "field": step.flux_density.tolist(),
+                "field": B,
                 "magnitude": magnitude,
                 "unstable": bool(step.negative_pivots),
             }
-            for step, magnitude in zip(steps, magnitudes, strict=True)
+            for step, B, magnitude in zip(steps, fields, magnitudes, strict=True)
         ],
-        "strongest": max(magnitudes),
+        "strongest": max((one for one in magnitudes if one is not None), default=0.0),
         "where": "" if path.model.field.is_uniform else " at the centre",
         "stages": path.steps[-1].stage + 1,
         "over": over(path),
@@ -110,6 +111,10 @@ def collect(path: Path, steps: Sequence[Step], color: str, advance: Callable[[fl
         "sources": drawn,
     }
     return Data(header, arrays)
+
+
+def _known(flux_density: FloatArray) -> list[float] | None:
+    return flux_density.tolist() if np.isfinite(flux_density).all() else None
 
 
 def page_outputs(path: Path, first: Output) -> list[Output]:

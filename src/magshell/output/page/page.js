@@ -159,7 +159,9 @@ function go(step) {
   const about = header.steps[state.step];
   at("slider").value = state.step;
   at("step").textContent = `step ${about.number} of ${header.steps.at(-1).number}`;
-  at("field").textContent = header.strongest > 0 ? `|B| = ${figures(about.magnitude * 1e3)} mT${header.where}` : "no field";
+  const known = `|B| = ${figures(about.magnitude * 1e3)} mT${header.where}`;
+  at("field").textContent =
+    about.magnitude === null ? "field not known at the centre" : header.strongest > 0 ? known : "no field";
   const stage = header.stages > 1 ? `stage ${about.stage}, ` : "";
   const turned = header.over.find(({ name }) => name.endsWith(".angle"));
   const angle = turned ? `, ${turned.label.replace(" (°)", "")} ${figures(turned.x[about.number])}°` : "";
