@@ -16,6 +16,8 @@ import numpy as np
 from llvmlite import ir
 from numba.core import cgutils
 from numba.core.ccallback import CFunc
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
 from numba.extending import intrinsic
 
 from magshell.arrays import FloatArray, IntArray
@@ -188,6 +190,41 @@ def call(typing: Any, address: Any, *kinds: Any) -> Any:
     return numba.float64(address, numba.types.StarArgTuple(kinds)), generate
 
 
+class _Part(JITCodeLibrary):  # type: ignore[misc]
+    """Code that is linked into kernels and has no machine code of its own: only kernels are optimised."""
+
+    def add_llvm_module(self, module: Any) -> None:
+        """Add it as it is."""
+        self._final_module.link_in(module)
+
+    def finalize(self) -> None:
+        """Link what the part calls."""
+        for library in dict.fromkeys(self._linking_libraries):
+            self._reload_init.update(library._reload_init)
+            self._final_module.link_in(library._get_module_for_linking(), preserve=True)
+        self._finalized = True
+
+    def get_pointer_to_function(self, name: str) -> int:
+        """There is none."""
+        self._ensure_finalized()
+        return 0
+
+    @property
+    def codegen(self) -> Any:
+        """Itself: Numba asks it only to set the environment of the machine code."""
+        return self
+
+    def set_env(self, name: str, environment: Any) -> None:
+        """There is none."""
+
+
+class _PartCompiler(Compiler):  # type: ignore[misc]
+    """Numba's compiler, for parts of kernels."""
+
+    def __init__(self, typing: Any, target: Any, library: Any, *settings: Any) -> None:
+        super().__init__(typing, target, _Part(target.codegen(), "part"), *settings)
+
+
 def allocate(function: Function) -> Function:
     """Compile a function that makes the arrays of a kernel."""
     compiled: Function = numba.njit()(function)
@@ -199,8 +236,8 @@ def inline(function: Function) -> Function:
 
     It must not allocate: without reference counting, calls and views of arrays cost nothing.
     """
-    compiled: Function = numba.njit(**_OPTIONS, _nrt=False)(function)
-    return compiled
+    made: Function = numba.extending.register_jitable(**_OPTIONS, _nrt=False, pipeline_class=_PartCompiler)(function)
+    return made
 
 
 def also_compiled(function: Function) -> Function:
