@@ -73,8 +73,8 @@ def _turning(model: Model) -> dict[str, int]:
     """Angles among the amounts of a uniform field that turns, and their numbers."""
     if not model.field.is_uniform:
         return {}
-    turned = model.field.ends(len(model.stages)).any(axis=0)
-    return {name: i for i, name in enumerate(model.field.drives) if name.endswith(".angle") and turned[i]}
+    ends = model.field.ends(len(model.stages))
+    return {name: i for i, name in enumerate(model.field.drives) if name.endswith(".angle") and ends[:, i].any()}
 
 
 def _has_springs(model: Model) -> bool:
