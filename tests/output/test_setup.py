@@ -233,6 +233,7 @@ def test_turns_of_magnets_are_arcs_about_their_axis():
     assert [mark.name for mark in (first, second)] == ["arm turns by 90° in stage 2", "arm turns by -120° in stage 3"]
     for mark, angle in ((first, np.pi / 2), (second, -2 * np.pi / 3)):
         assert mark.places[0] == pytest.approx(centre + rise)
+        assert np.linalg.norm(mark.vectors[0]) > np.hypot(LENGTH, LENGTH), "the arc is hidden in what turns"
         assert end_of(mark) * np.sign(mark.vectors[0] @ (0, 1, 0)) == pytest.approx(angle)
     assert source_turns(turning(100 * centre), extent, LENGTH) == []
 

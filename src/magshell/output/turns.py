@@ -13,7 +13,7 @@ from magshell.magnetics.fields import MagnetField, UniformField
 from magshell.mesh.geometry import unit
 from magshell.model.support import frame_about
 from magshell.output.marks import SUPPORTS, Mark, Solids
-from magshell.output.sources import REACH
+from magshell.output.sources import REACH, pieces
 from magshell.output.style import ACCENT
 
 if TYPE_CHECKING:
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 RADIUS = 0.11
 """Of an arc, over the size of the part."""
+CLEAR = 1.2
+"""Of an arc about magnets or coils, over their reach from its axis."""
 
 
 def turn_marks(model: Model, size: float) -> list[Mark]:
@@ -51,7 +53,9 @@ def field_turns(model: Model, arrows: Sequence[Mark], size: float) -> list[Mark]
 
 
 def source_turns(model: Model, part: FloatArray, size: float) -> list[Mark]:
-    """An arc for each stage that turns magnets or coils, about their axis, at the point of it that moves with them.
+    """An arc for each stage that turns magnets or coils, about their axis and around them.
+
+    Its centre is the point of the axis that moves with them.
 
     Those far from the points (n, 3) of the part are left out, as their sources are.
     """
@@ -65,8 +69,16 @@ def source_turns(model: Model, part: FloatArray, size: float) -> list[Mark]:
             angle, pivot = float((after - before)[-1]), field.pivot(before)
             if angle and np.linalg.norm(pivot - middle) < REACH * size:
                 words = f"{field.name} turns by {degrees(angle)} in stage {stage + 1}"
-                marks.append(_arc(words, ACCENT, pivot, axis, frame_about(axis)[1], angle, size))
+                clear = CLEAR * _reach(field, before, pivot, axis) / RADIUS
+                wide = clear if size < clear < REACH * size else size
+                marks.append(_arc(words, ACCENT, pivot, axis, frame_about(axis)[1], angle, wide))
     return marks
+
+
+def _reach(field: MagnetField, amounts: FloatArray, pivot: FloatArray, axis: FloatArray) -> float:
+    """The largest distance of sources from an axis through a point."""
+    arms = np.concatenate([np.asarray(piece.surface.points, dtype=float) for piece in pieces(field, amounts)]) - pivot
+    return float(np.linalg.norm(arms - np.outer(arms @ axis, axis), axis=1).max())
 
 
 def _turned(model: Model) -> Iterator[tuple[int, FloatArray, FloatArray, float]]:
