@@ -36,7 +36,9 @@ def turn_marks(model: Model, size: float) -> list[Mark]:
         angle = float(np.linalg.norm(spin))
         axis = spin / angle
         frame = frame_about(axis)
-        mark = _arc("", SUPPORTS[number % len(SUPPORTS)], _centre(model, support.group), axis, frame[1], angle, size)
+        mark = _arc(
+            "", SUPPORTS[number % len(SUPPORTS)], _centre(model, support.group), axis, frame[1], angle, RADIUS * size
+        )
         marks.append(mark)
     return marks
 
@@ -47,7 +49,7 @@ def field_turns(model: Model, arrows: Sequence[Mark], size: float) -> list[Mark]
         return []
     tail = arrows[0].places[0] - 0.5 * arrows[0].vectors[0]
     return [
-        _arc(f"field turns by {degrees(angle)} in stage {stage + 1}", ACCENT, tail, axis, start, angle, size)
+        _arc(f"field turns by {degrees(angle)} in stage {stage + 1}", ACCENT, tail, axis, start, angle, RADIUS * size)
         for stage, axis, start, angle in _turned(model)
     ]
 
@@ -69,9 +71,9 @@ def source_turns(model: Model, part: FloatArray, size: float) -> list[Mark]:
             angle, pivot = float((after - before)[-1]), field.pivot(before)
             if angle and np.linalg.norm(pivot - middle) < REACH * size:
                 words = f"{field.name} turns by {degrees(angle)} in stage {stage + 1}"
-                clear = CLEAR * _reach(field, before, pivot, axis) / RADIUS
-                wide = clear if size < clear < REACH * size else size
-                marks.append(_arc(words, ACCENT, pivot, axis, frame_about(axis)[1], angle, wide))
+                around = CLEAR * _reach(field, before, pivot, axis)
+                radius = max(RADIUS * size, around if around < REACH * size else 0.0)
+                marks.append(_arc(words, ACCENT, pivot, axis, frame_about(axis)[1], angle, radius))
     return marks
 
 
@@ -95,9 +97,8 @@ def _turned(model: Model) -> Iterator[tuple[int, FloatArray, FloatArray, float]]
 
 
 def _arc(
-    name: str, colour: str, centre: FloatArray, axis: FloatArray, start: FloatArray, angle: float, size: float
+    name: str, colour: str, centre: FloatArray, axis: FloatArray, start: FloatArray, angle: float, radius: float
 ) -> Mark:
-    radius = RADIUS * size
     mark = Mark(name, colour, Solids.TURNS, centre[None], radius * axis[None], start=start, angle=angle)
     if name:
         return mark
