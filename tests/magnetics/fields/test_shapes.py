@@ -206,3 +206,9 @@ def test_on_a_surface_or_wire_there_is_no_field(name):
     assert np.array_equal(caught.value.position, corner)
     beside = field.at(field.ends(1)[1], (corner + np.array([1e-4, 2e-4, 3e-4]))[None])
     assert all(np.isfinite(array).all() for array in beside)
+
+
+def test_beside_a_dipole_by_round_off_is_at_it():
+    field = MagnetField([SHAPES["dipole"]])
+    with pytest.raises(FieldUnknown, match="of a dipole"):
+        field.at(field.ends(1)[1], np.array([[1e-19, 0.0, 0.0]]))

@@ -19,6 +19,8 @@ from magshell.magnetics.fields.magpy import is_of_magpylib, shapes_of
 from magshell.magnetics.fields.motion import Motion, MovingField, rotation, turned, vector
 from magshell.magnetics.fields.shapes import LEAST, Shape
 
+POINT = 1e-9
+"""Distance, m, within which a point is at a dipole: far above the round-off of places."""
 OUTSIDE = -1
 
 
@@ -183,7 +185,7 @@ class MagnetField(MovingField):
     def _check_known(self, points: FloatArray) -> None:
         """Refuse points on surfaces and wires, where magpylib gives 0, and those too near for the splines."""
         for source in self.sources:
-            least = LEAST * source.shape.size if self.spacing is None else NEAREST * self.spacing
+            least = _touching(source.shape) if self.spacing is None else NEAREST * self.spacing
             away = np.linalg.norm(points - source.place, axis=1)
             near = np.flatnonzero(away <= source.shape.size + least)
             distance = source.shape.distance(source.local(points[near]))
@@ -200,7 +202,7 @@ class MagnetField(MovingField):
             "" if self.motion.displacement is None and self.motion.rotation is None else " in the frame of the sources"
         )
         where = f"{self.name}: the point ({place}) m{frame} is"
-        if distance <= LEAST * source.shape.size:
+        if distance <= _touching(source.shape):
             return (
                 f"{where} on the surface or wire of a {kind}, where its field jumps or has no limit; move one of them"
             )
@@ -216,6 +218,11 @@ class MagnetField(MovingField):
         for source in self.sources:
             total += source.shape.flux_density(source.local(points)) @ source.turn.T
         return total
+
+
+def _touching(shape: Shape) -> float:
+    """Distance from the surface, the wire or the dipole within which a point is on it, m."""
+    return max(LEAST * shape.size, POINT)
 
 
 def _sources_of(given: Any) -> Iterable[Source]:
