@@ -79,9 +79,9 @@ class Recovery(NamedTuple):
         return self._averaged(self.to_axes @ there @ np.swapaxes(self.to_axes, -1, -2))
 
     def axes_of(self, values: FloatArray) -> FloatArray:
-        """Images of the axes of the frames, columns (elements, p, 3, 3), as images of the local axes, columns (rows, 3, 3).
+        """Images of the axes of the frames (elements, p, 3, 3) as images of the local axes (rows, 3, 3).
 
-        They are in X1, X2, X3, and turn with the copies of elements.
+        They are columns, in X1, X2, X3, and turn with the copies of elements.
         """
         nodal = np.matmul(self.to_nodes, values.reshape(*values.shape[:2], 9)).reshape(-1, 3, 3)
         turns = self.patches.around.rotation[self.patches.places // 8]
