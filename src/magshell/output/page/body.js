@@ -82,6 +82,14 @@ class Body {
     return drawn;
   }
 
+  // Numbers of the drawn points that a node of the mesh has: itself, or those on the faces and walls over it.
+  over(node) {
+    if (!this.thick) return [node];
+    this.meshNodes ??= stored("mesh-nodes", Uint32Array);
+    this.drawnOver ??= Map.groupBy(this.nodes.keys(), (i) => this.meshNodes[this.nodes[i]]);
+    return this.drawnOver.get(node);
+  }
+
   // Points and unit normals of the surface through nodes at these positions.
   place(nodal) {
     const { positions, normals } = this;
