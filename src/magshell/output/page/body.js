@@ -85,8 +85,14 @@ class Body {
   // Numbers of the drawn points that a node of the mesh has: itself, or those on the faces and walls over it.
   over(node) {
     if (!this.thick) return [node];
-    this.meshNodes ??= stored("mesh-nodes", Uint32Array);
-    this.drawnOver ??= Map.groupBy(this.nodes.keys(), (i) => this.meshNodes[this.nodes[i]]);
+    if (!this.drawnOver) {
+      this.meshNodes ??= stored("mesh-nodes", Uint32Array);
+      this.drawnOver = new Map();
+      this.nodes.forEach((row, i) => {
+        const n = this.meshNodes[row];
+        this.drawnOver.has(n) ? this.drawnOver.get(n).push(i) : this.drawnOver.set(n, [i]);
+      });
+    }
     return this.drawnOver.get(node);
   }
 
