@@ -15,7 +15,8 @@ import pytest
 from chromium import Browser, browser, missing
 from joints.bodies import FOLD, extruded
 from PIL import Image
-from rolled import FIELD, mixed, plate, rolled
+from rolled import FIELD, WIDTH, mixed, plate, rolled
+from rolled import LENGTH as ROLL
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
@@ -598,6 +599,32 @@ def test_page_of_many_probes_names_those_that_have_room(shared, tmp_path):
     assert 3 < len(shared.driver.find_elements(By.CSS_SELECTOR, "#probes text")) < len(points)
     legend = shared.driver.find_element(By.ID, "legend").text
     assert f"of {len(points)} probes are drawn; history.csv has all." in legend
+    assert shared.console() == []
+
+
+@pytest.mark.parametrize("thick", [False, True], ids=["surface", "faces"])
+def test_probes_behind_the_body_are_pale_and_have_no_name(shared, tmp_path, thick):
+    """Around a rolled plate, seen from both sides: the near half hides the far half."""
+    path = rolled(plate((20, 6)), 2)
+    shares = (0.1, 0.25, 0.4, 0.6, 0.75, 0.9)
+    at = {f"at {share}": (share * ROLL, 0.5 * WIDTH, 0) for share in shares}
+    shell = replace(path.model.shell, offset="bottom") if thick else path.model.shell
+    model = replace(path.model, shell=shell, probes=at)
+    path = replace(path, model=model, discretisation=Discretisation(model, nested_dissection))
+    shared.size(*SIZE)
+    shared.open(write_page(path, tmp_path / "view.html"))
+    assert shared.driver.execute_script("return Boolean(body.thick)") == thick
+    near, far = [name for name in at if float(name[3:]) < 0.5], [name for name in at if float(name[3:]) > 0.5]
+    for azimuth, seen, hidden in ((0, near, far), (180, far, near)):
+        shared.do(f"camera.look({azimuth}, 15);" + AFTER_DRAWING)
+        marks = shared.driver.execute_script("return probes.marks.map(({name, seen}) => [name, seen])")
+        assert {name for name, is_seen in marks if is_seen} == set(seen)
+        circles = shared.driver.find_elements(By.CSS_SELECTOR, "#probes circle")
+        assert sorted(float(one.get_attribute("opacity")) for one in circles) == [0.3] * len(hidden) + [1.0] * len(seen)
+        names = [one.text for one in shared.driver.find_elements(By.CSS_SELECTOR, "#probes text")]
+        assert names
+        assert set(names) <= set(seen)
+        shared.picture().save(tmp_path / f"{azimuth}.png")
     assert shared.console() == []
 
 

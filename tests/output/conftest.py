@@ -126,7 +126,8 @@ class FakePath:
             stages=[SimpleNamespace(branch=None)] * 3,
             probe_nodes={name: mesh.node_at(position) for name, position in probes.items()},
             course=lambda stage: SimpleNamespace(
-                at=lambda load_factor: Loading(np.zeros(3), np.zeros(0), np.zeros((1, 11)), np.zeros(0))
+                at=lambda load_factor: Loading(np.zeros(3), np.zeros(0), np.zeros((1, 11)), np.zeros(0)),
+                reported=lambda load_factor, flux_density: flux_density,
             ),
         )
         self.discretisation = FakeDiscretisation(self.model, mesh)
@@ -135,6 +136,9 @@ class FakePath:
         self.steps = [self._step(number, load) for number, load in enumerate(loads)]
         self.history = History(self.discretisation)
         self.summary = {"converged": True, "reason": "", "linear_solves": np.int64(21), "cpu_seconds": 0.125}
+
+    def flux_density(self, step):
+        return step.flux_density
 
     def _step(self, number, load):
         X = self.discretisation.mesh.points

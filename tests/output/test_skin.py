@@ -44,7 +44,7 @@ def path_of(mesh, **outer):
         drives=loading.drives,
         negative_pivots=0,
     )
-    return SimpleNamespace(model=model, discretisation=d, steps=[step])
+    return SimpleNamespace(model=model, discretisation=d, steps=[step], flux_density=lambda one: one.flux_density)
 
 
 def placed(path):

@@ -10,6 +10,9 @@ from battery import MATERIAL, example
 
 import magshell as ms
 from magshell import mesh as meshes
+from magshell.evaluation.converged import converged
+from magshell.evaluation.patches import patches_of
+from magshell.evaluation.strain import FACES
 from magshell.mesh import Mesh
 from magshell.mesh.edges import find_edges
 from magshell.mesh.welding import merged
@@ -110,3 +113,16 @@ def copied(mesh: Mesh, motions: list[tuple[np.ndarray, np.ndarray]]) -> tuple[Me
 
 def _sorted(edges: np.ndarray) -> np.ndarray:
     return np.column_stack([np.sort(edges[:, :2], axis=1), edges[:, 2]])
+
+
+def recovered_alike(part, whole, accuracy):
+    """Strain, stress and resultants at the nodes of a part's elements are those of the first elements of the whole."""
+    here, there = (converged(path.discretisation, path.steps[-1]) for path in (part, whole))
+    rows, of_whole = (patches_of(path.discretisation.model.shell).elements for path in (part, whole))
+    for name in ("log_strain", "cauchy"):
+        for face in FACES:
+            one, other = here.at_face(name, face)[rows], there.at_face(name, face)[of_whole[: len(rows)]]
+            assert np.abs(one - other).max() < accuracy * np.abs(other).max(), (name, face)
+    for name in ("forces", "moments", "couples", "axes"):
+        one, other = here.resultant(name)[rows], there.resultant(name)[of_whole[: len(rows)]]
+        assert np.abs(one - other).max() < accuracy * np.abs(other).max(), name

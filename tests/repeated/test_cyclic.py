@@ -64,17 +64,17 @@ LOADS = {
 }
 
 
-def of_sector(body, loads=(), element="quadratic", **model):
+def of_sector(body, loads=(), element="quadratic", magnets=remanence, **model):
     mesh = body.mesh
     cyclic = ms.Cyclic("start", "stop", sectors=SECTORS, axis=AXIS, point=POINT)
-    made = shell(mesh, body.made(remanence(mesh)), remanence(mesh), element=element, repeated=[cyclic])
+    made = shell(mesh, body.made(magnets(mesh)), magnets(mesh), element=element, repeated=[cyclic])
     return solve(_model(made, loads, **model), Settings(tolerance=1e-11))
 
 
-def of_whole(body, loads=(), element="quadratic", **model):
+def of_whole(body, loads=(), element="quadratic", magnets=remanence, **model):
     mesh, turns = body.mesh, [Rotation.from_rotvec(k * ANGLE * AXIS).as_matrix() for k in range(SECTORS)]
     whole, nodes = copied(mesh, [(Q, POINT - Q @ POINT) for Q in turns])
-    vectors = np.concatenate([remanence(mesh) @ Q.T for Q in turns])
+    vectors = np.concatenate([magnets(mesh) @ Q.T for Q in turns])
     made = shell(whole, body.made(vectors), vectors, element=element)
     many = [one if isinstance(one, ms.Gravity | ms.Pressure) else _times(one, SECTORS) for one in loads]
     return solve(_model(made, many, **model), Settings(tolerance=1e-11)), nodes

@@ -54,7 +54,7 @@ def test_cell_is_part_of_four(held, loads):
     vectors = remanence(mesh)
     one = solved(mesh, vectors, held, loads)
     many, nodes = copied(mesh, [(np.eye(3), np.array([i, j, 0.0])) for i in range(2) for j in range(2)])
-    many = _bounded(many)
+    many = bounded(many)
     four = solved(many, np.tile(vectors, (4, 1)), held, loads, times=2)
     here, there = one.steps[-1], four.steps[-1]
     size = np.abs(there.state.u).max()
@@ -70,7 +70,7 @@ def test_cell_is_part_of_four(held, loads):
         assert step.balance.moment_imbalance < 1e-8
 
 
-def _bounded(mesh):
+def bounded(mesh):
     """The mesh with the sides of the whole."""
     for name, (axis, value) in {"left": (0, 0.0), "right": (0, 2.0), "bottom": (1, 0.0), "top": (1, 2.0)}.items():
         edges = mesh.boundary_edges

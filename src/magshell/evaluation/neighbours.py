@@ -58,7 +58,7 @@ class Neighbours(NamedTuple):
 
 
 def found(element: ElementType, coordinates: FloatArray, frame: FloatArray, patches: Patches) -> Neighbours:
-    """Neighbours of elements (elements, 8, 3) with the frames (elements, 3, 3) at their centres."""
+    """Neighbours of elements; `patches.around` has n with the nodes (n, 8, 3) and frames (n, 3, 3) at the centres."""
     centre = element.functions(8, np.zeros((1, 2)), coordinates)
     A = np.einsum("ean,enx->eax", centre.derivatives[:, 0], coordinates)
     dual = np.linalg.solve(A @ np.swapaxes(A, -1, -2), A)
@@ -68,8 +68,7 @@ def found(element: ElementType, coordinates: FloatArray, frame: FloatArray, patc
     shares = area / area.sum(axis=1, keepdims=True)
     places = np.einsum("epn,enx->epx", element.functions(8, points, coordinates).values, coordinates)
     middle = np.einsum("ep,epx->ex", shares, places)
-    pairs = _pairs(patches)
-    one, other = pairs.T
+    one, other = _pairs(patches)
     ξ = np.einsum("kax,kx->ka", dual[one], middle[other] - middle[one])
     moments = np.stack([np.bincount(one, ξ[:, i] * ξ[:, j], len(A)) for i in (0, 1) for j in (0, 1)], axis=1)
     values, vectors = np.linalg.eigh(moments.reshape(-1, 2, 2))
@@ -77,25 +76,26 @@ def found(element: ElementType, coordinates: FloatArray, frame: FloatArray, patc
     inverses = (vectors * inverse[:, None]) @ np.swapaxes(vectors, -1, -2)
     carried = frame[other] @ turned(frame[other, 2], frame[one, 2])
     turn = frame[one] @ np.swapaxes(carried, -1, -2)
+    own = len(patches.elements)
     return Neighbours(
-        shares,
-        pairs,
+        shares[:own],
+        np.stack([one, patches.around.original[other]], axis=1),
         turn[:, :2, :2],
         np.einsum("kij,kj->ki", inverses[one], ξ),
-        np.einsum("eax,enx->ena", dual, coordinates - middle[:, None]),
+        np.einsum("eax,enx->ena", dual, coordinates - middle[:, None])[:own],
     )
 
 
-def _pairs(patches: Patches) -> IntArray:
-    """Elements that share a row, each with each other."""
-    elements = patches.elements
-    kept = np.ones(elements.shape, dtype=bool)
-    kept[np.ix_(is_triangle(elements), REPEATED)] = False
-    number = np.repeat(np.arange(len(elements)), 8)[kept.ravel()]
-    has = sp.csr_array((np.ones(len(number)), (number, elements[kept])), shape=(len(elements), len(patches.nodes)))
-    together = (has @ has.T).tocoo()
+def _pairs(patches: Patches) -> tuple[IntArray, IntArray]:
+    """Elements, and those in `patches.around` that share a row with them."""
+    number, node = np.divmod(patches.places, 8)
+    kept = ~(is_triangle(patches.around.elements)[number] & np.isin(node, REPEATED))
+    number, rows = number[kept], patches.rows[kept]
+    shape = len(patches.around.elements), len(patches.nodes)
+    has = sp.csr_array((np.ones(len(number)), (number, rows)), shape=shape)
+    together = (has[: len(patches.elements)] @ has.T).tocoo()
     different = together.row != together.col
-    return np.stack([together.row[different], together.col[different]], axis=1)
+    return together.row[different], together.col[different]
 
 
 def turned(before: FloatArray, after: FloatArray) -> FloatArray:

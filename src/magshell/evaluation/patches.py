@@ -3,6 +3,8 @@
 Stress and strain jump where thickness, layers, material or remanence change, and at a kink. So a node has a row of its
 own for each patch of elements about it that is free of such borders: most have one, those on a border two or more.
 Tables of rows begin with one row for each node of the mesh, in its order; the further ones follow.
+
+Where a part that stands for many alike meets its neighbours, their elements belong to the patches like its own.
 """
 
 from __future__ import annotations
@@ -15,6 +17,7 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
 from magshell.arrays import AnyArray, FloatArray, IntArray
+from magshell.evaluation.around import Around, around
 from magshell.evaluation.extrapolation import to_nodes
 from magshell.mesh.edges import SIDES, find_edges, is_triangle
 from magshell.model.rows import rows_of
@@ -39,17 +42,26 @@ class Patches(NamedTuple):
         Row of each node of each element.
     normals : ndarray, shape (rows, 3)
         Unit normals of the undeformed surface, averaged over the patch.
-    mean : csr_array, shape (rows, 8 * elements)
-        Takes values at the nodes of each element to their mean over the patch.
     first : ndarray, shape (rows,)
         First element of each patch.
+    around : Around
+        The elements, and those of the neighbours.
+    places : ndarray, shape (k,)
+        Nodes in the patches, as places in `around.elements.ravel()`: all of the elements, then those of neighbours.
+    rows : ndarray, shape (k,)
+        Row of each of them.
+    mean : csr_array, shape (rows, k)
+        Takes values at the places to their mean over the patch.
     """
 
     nodes: IntArray
     elements: IntArray
     normals: FloatArray
-    mean: sp.csr_array
     first: IntArray
+    around: Around
+    places: IntArray
+    rows: IntArray
+    mean: sp.csr_array
 
 
 _kept: weakref.WeakKeyDictionary[Shell, Patches] = weakref.WeakKeyDictionary()
@@ -63,35 +75,46 @@ def patches_of(shell: Shell) -> Patches:
 
 
 def _found(shell: Shell) -> Patches:
-    mesh = shell.mesh
-    elements, normals = mesh.elements, corner_normals(mesh.points, mesh.elements)
-    count = elements.size
-    one, other = _joined(elements, _smooth(elements, normals, rows_of(shell).elements, _remanence(shell)))
-    graph = sp.coo_array((np.ones(len(one)), (one, other)), shape=(count, count))
+    about = around(shell)
+    elements, normals = about.elements, corner_normals(about.points, about.elements)
+    one, other = _joined(elements, _smooth(elements, normals, *_made(shell, about)))
+    graph = sp.coo_array((np.ones(len(one)), (one, other)), shape=(elements.size, elements.size))
     component = connected_components(graph, directed=False)[1]
     _, first, inverse = np.unique(component, return_index=True, return_inverse=True)
+    own = np.flatnonzero(first < shell.mesh.elements.size)
+    first = first[own]
     order = _nodes_first(elements.ravel()[first], first)
-    place = np.empty_like(order)
-    place[order] = np.arange(len(order))
-    rows = place[inverse].reshape(elements.shape)
+    row_of = np.full(inverse.max() + 1, -1)
+    row_of[own[order]] = np.arange(len(order))
+    places = np.flatnonzero(row_of[inverse] >= 0)
+    rows = row_of[inverse[places]]
     counts = np.ones(elements.shape)
     counts[np.ix_(is_triangle(elements), REPEATED)] = 0.0
-    shares = counts.ravel() / np.bincount(rows.ravel(), counts.ravel())[rows.ravel()]
-    mean = sp.csr_array((shares, (rows.ravel(), np.arange(count))), shape=(len(order), count))
-    total = np.asarray(mean @ normals.reshape(-1, 3))
+    shares = counts.ravel()[places]
+    shares /= np.bincount(rows, shares)[rows]
+    mean = sp.csr_array((shares, (rows, np.arange(len(rows)))), shape=(len(order), len(rows)))
+    total = np.asarray(mean @ normals.reshape(-1, 3)[places])
     return Patches(
         elements.ravel()[first[order]],
-        rows,
+        rows[: shell.mesh.elements.size].reshape(shell.mesh.elements.shape),
         total / np.linalg.norm(total, axis=1, keepdims=True),
-        mean,
         first[order] // 8,
+        about,
+        places,
+        rows,
+        mean,
     )
 
 
-def _remanence(shell: Shell) -> FloatArray:
-    """Remanence at the nodes of each element (elements, 8, 3), T."""
+def _made(shell: Shell, about: Around) -> tuple[IntArray, FloatArray]:
+    """Rows of the nodal arrays (n, 8), those of images by their roots, and remanence (n, 8, 3), T, at the nodes."""
+    rows = rows_of(shell)
+    root = np.arange(len(rows.of))
+    root[rows.images.rows] = rows.images.roots
     matrices = to_nodes(shell.element, shell.mesh.points[shell.mesh.elements])
-    return np.asarray(np.einsum("enp,epx->enx", matrices, shell.remanence_at_points))
+    remanence = np.einsum("enp,epx->enx", matrices, shell.remanence_at_points)
+    turned = np.einsum("eij,enj->eni", about.rotation, remanence[about.original])
+    return root[rows.elements][about.original], turned
 
 
 def _smooth(elements: IntArray, normals: FloatArray, rows: IntArray, remanence: FloatArray) -> IntArray:

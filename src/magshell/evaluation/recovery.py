@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from magshell.arrays import FloatArray
+from magshell.arrays import FloatArray, IntArray
 from magshell.equations.discretisation import Discretisation
 from magshell.evaluation import neighbours, points
 from magshell.evaluation.extrapolation import to_nodes
@@ -37,8 +37,10 @@ class Recovery(NamedTuple):
         Frame at each point: its rows are two tangents of the surface and its normal.
     axes : ndarray, shape (rows, 3, 3)
         Local axes of each row of the patches, as rows.
-    to_axes : ndarray, shape (elements, 8, 3, 3)
-        From components in the frames of the points to components in the local axes of a node.
+    sources : ndarray, shape (k,)
+        Node of an element, 8 e + n, that has the value at each place of the patches.
+    to_axes : ndarray, shape (k, 3, 3)
+        From components in the frames of the points to components in the local axes of the place's row.
     to_nodes : ndarray, shape (elements, 8, p)
         From values at the points to values at the nodes.
     neighbours : Neighbours
@@ -49,34 +51,45 @@ class Recovery(NamedTuple):
     patches: Patches
     points: FloatArray
     axes: FloatArray
+    sources: IntArray
     to_axes: FloatArray
     to_nodes: FloatArray
     neighbours: Neighbours
     faces: Levels
 
-    def vectors(self, values: FloatArray, shear: bool = True) -> FloatArray:
+    def vectors(self, values: FloatArray) -> FloatArray:
         """Components in the frames of the points (elements, p, 3) as components in the local axes (rows, 3).
 
         Of the rotations of transverse shear only the means of the first two are accurate.
         """
         nodal = np.matmul(self.to_nodes, values)
-        if shear:
-            nodal[..., :2] = self.neighbours.at_nodes(values[..., :2])
-        return self._averaged(np.matmul(self.to_axes, nodal[..., None])[..., 0])
+        nodal[..., :2] = self.neighbours.at_nodes(values[..., :2])
+        there = nodal.reshape(-1, 3)[self.sources]
+        return self._averaged(np.matmul(self.to_axes, there[..., None])[..., 0])
 
     def tensors(self, values: FloatArray) -> FloatArray:
         """Components in the frames of the points (elements, p, 3, 3) as components in the local axes (rows, 3, 3).
 
         The components 31, 32, 13 and 23 are those of transverse shear.
         """
-        nodal = np.matmul(self.to_nodes, values.reshape(*values.shape[:2], 9)).reshape(*self.to_axes.shape)
+        nodal = np.matmul(self.to_nodes, values.reshape(*values.shape[:2], 9)).reshape(len(values), 8, 3, 3)
         nodal[..., 2, :2] = self.neighbours.at_nodes(values[..., 2, :2])
         nodal[..., :2, 2] = self.neighbours.at_nodes(values[..., :2, 2])
-        return self._averaged(self.to_axes @ nodal @ np.swapaxes(self.to_axes, -1, -2))
+        there = nodal.reshape(-1, 3, 3)[self.sources]
+        return self._averaged(self.to_axes @ there @ np.swapaxes(self.to_axes, -1, -2))
 
-    def _averaged(self, nodal: FloatArray) -> FloatArray:
-        averaged = self.patches.mean @ nodal.reshape(self.patches.elements.size, -1)
-        return np.asarray(averaged).reshape(-1, *nodal.shape[2:])
+    def axes_of(self, values: FloatArray) -> FloatArray:
+        """Images of the axes of the frames (elements, p, 3, 3) as images of the local axes (rows, 3, 3).
+
+        They are columns, in X1, X2, X3, and turn with the copies of elements.
+        """
+        nodal = np.matmul(self.to_nodes, values.reshape(*values.shape[:2], 9)).reshape(-1, 3, 3)
+        turns = self.patches.around.rotation[self.patches.places // 8]
+        return self._averaged(turns @ nodal[self.sources] @ np.swapaxes(self.to_axes, -1, -2))
+
+    def _averaged(self, there: FloatArray) -> FloatArray:
+        averaged = self.patches.mean @ there.reshape(len(there), -1)
+        return np.asarray(averaged).reshape(-1, *there.shape[1:])
 
 
 _kept: weakref.WeakKeyDictionary[Discretisation, Recovery] = weakref.WeakKeyDictionary()
@@ -90,23 +103,26 @@ def recovery_of(discretisation: Discretisation) -> Recovery:
 
 
 def _made(discretisation: Discretisation) -> Recovery:
-    mesh, geometry = discretisation.mesh, discretisation.reference.geometry
-    patches = patches_of(discretisation.model.shell)
+    geometry, shell = discretisation.reference.geometry, discretisation.model.shell
+    patches = patches_of(shell)
+    about = patches.around
     normals = _unit(np.cross(geometry.A[:, :, 0], geometry.A[:, :, 1]))
     middle = _unit(normals.sum(axis=1))
     frame = local_axes(middle, geometry.A[:, 0, 0])
     at_points = frame[:, None] @ turned(middle[:, None], normals)
-    at_nodes = frame[:, None] @ turned(middle[:, None], patches.normals[patches.elements])
+    frames = frame[about.original] @ np.swapaxes(about.rotation, -1, -2)
+    number, node = np.divmod(patches.places, 8)
+    at_nodes = frames[number] @ turned(frames[number, 2], patches.normals[patches.rows])
     axes = local_axes(patches.normals, np.asarray(discretisation.model.local_axis, dtype=float))
-    to_axes = axes[patches.elements] @ np.swapaxes(at_nodes, -1, -2)
-    shell, coordinates = discretisation.model.shell, mesh.points[mesh.elements]
+    coordinates = about.points[about.elements]
     return Recovery(
         patches,
         at_points,
         axes,
-        to_axes,
-        to_nodes(shell.element, coordinates),
-        neighbours.found(shell.element, coordinates, frame, patches),
+        8 * about.original[number] + node,
+        axes[patches.rows] @ np.swapaxes(at_nodes, -1, -2),
+        to_nodes(shell.element, coordinates[: len(frame)]),
+        neighbours.found(shell.element, coordinates, frames, patches),
         points.faces(shell, geometry),
     )
 

@@ -95,9 +95,7 @@ class Resultants:
     @cached_property
     def axes(self) -> FloatArray:
         """Deformed local axes (rows, 3, 3), as rows, in X1, X2, X3."""
-        recovery = self._recovery
-        turned = [recovery.vectors(self._axes[:, :, i], shear=False) for i in range(3)]
-        left, _, right = np.linalg.svd(np.stack(turned, axis=-1))
+        left, _, right = np.linalg.svd(np.swapaxes(self._recovery.axes_of(self._axes), 1, 2))
         return np.asarray(left @ right)
 
 

@@ -82,6 +82,20 @@ class Body {
     return drawn;
   }
 
+  // Numbers of the drawn points that a node of the mesh has: itself, or those on the faces and walls over it.
+  over(node) {
+    if (!this.thick) return [node];
+    if (!this.drawnOver) {
+      this.meshNodes ??= stored("mesh-nodes", Uint32Array);
+      this.drawnOver = new Map();
+      this.nodes.forEach((row, i) => {
+        const n = this.meshNodes[row];
+        this.drawnOver.has(n) ? this.drawnOver.get(n).push(i) : this.drawnOver.set(n, [i]);
+      });
+    }
+    return this.drawnOver.get(node);
+  }
+
   // Points and unit normals of the surface through nodes at these positions.
   place(nodal) {
     const { positions, normals } = this;

@@ -8,7 +8,7 @@ const channels = (name, opacity) => {
 };
 
 const state = { step: header.steps.length - 1, quantity: null, component: 0 };
-let scene = null, body = null, camera = null, curves = null, probes = null, pointer = null, playing = null, due = false;
+let scene = null, body = null, camera = null, curves = null, probes = null, sight = null, pointer = null, playing = null, due = false;
 
 // ---- the shape
 
@@ -34,6 +34,7 @@ function startShape() {
   }
   camera = new Camera(canvas, header.hull, header.view, redraw);
   probes = new Probes(at("probes"), header.probes);
+  sight = new Sight(scene);
   pointer = new Pointer(canvas, at("hint"));
   new ResizeObserver(() => {
     canvas.width = Math.round(canvas.clientWidth * devicePixelRatio);
@@ -48,6 +49,7 @@ function showShape() {
   const nodal = body.thick
     ? body.drawn(moved, quantities.get("director").columns(state.step), quantities.get("phi").column(state.step, 0))
     : moved;
+  scene.drawn = nodal;
   body.place(nodal);
   scene.fill(scene.surface, "position", body.positions);
   scene.fill(scene.surface, "normal", body.normals);
@@ -113,6 +115,15 @@ function covered() {
   });
 }
 
+// Of each probe, whether it is seen: on one of the faces where these are drawn.
+function seenProbes() {
+  const over = header.probes.map(({ node }) => body.over(node));
+  const points = over.flat().flatMap((i) => [...scene.drawn.subarray(3 * i, 3 * i + 3)]);
+  const seen = points.length ? sight.of(new Float32Array(points), camera) : [];
+  let at = 0;
+  return over.map((own) => seen.slice(at, (at += own.length)).some(Boolean));
+}
+
 function redraw() {
   if (due || !scene) return;
   due = true;
@@ -122,7 +133,7 @@ function redraw() {
     if (!state.range || !canvas.width || !canvas.height) return;
     drawScene();
     showCompass();
-    probes.draw(camera, scene.moved, at("marks").checked, covered());
+    probes.draw(camera, scene.moved, at("marks").checked ? seenProbes() : null, covered());
     pointer.show();
     if (!performance.getEntriesByName("drawn").length) requestAnimationFrame(() => performance.mark("drawn"));
   });

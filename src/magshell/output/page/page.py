@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from magshell.solver.path import Path
 
 SCRIPTS = (
-    "data.js", "files.js", "body.js", "camera.js", "scene.js", "curves.js", "probes.js", "pointer.js", "solid.js",
-    "page.js",
+    "data.js", "files.js", "body.js", "camera.js", "scene.js", "sight.js", "curves.js", "probes.js", "pointer.js",
+    "solid.js", "page.js",
 )  # fmt: skip
 TITLE = "Deformed shell"
 

@@ -74,11 +74,11 @@ class Pointer {
     return body.told(corners, found.shares, scene.moved);
   }
 
-  // The probe whose mark is at a place, or null.
+  // The probe whose mark is at a place, or null; rather one that is seen.
   probe(place) {
     const near = probes.marks.filter(({ x, y }) => Math.hypot(x - place[0], y - place[1]) < NEAR);
     const distance = ({ x, y }) => Math.hypot(x - place[0], y - place[1]);
-    return near.sort((one, other) => distance(one) - distance(other))[0] ?? null;
+    return near.sort((one, other) => other.seen - one.seen || distance(one) - distance(other))[0] ?? null;
   }
 
   show() {

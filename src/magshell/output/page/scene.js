@@ -184,46 +184,55 @@ class Scene {
     drawable.instances = data.length / 6;
   }
 
+  // Take up a program with its arrays, the camera's numbers, and values of its uniforms.
+  begin(camera, { program, array }, values) {
+    const { gl } = this;
+    gl.useProgram(program);
+    gl.bindVertexArray(array);
+    const set = (name, ...numbers) => {
+      const place = gl.getUniformLocation(program, name);
+      if (numbers.length === 9) gl.uniformMatrix3fv(place, true, numbers);
+      else if (place) gl[`uniform${numbers.length}f`](place, ...numbers);
+    };
+    set("axes", ...camera.axes.flat());
+    set("centre", ...camera.centre);
+    set("span", ...camera.span);
+    set("pixels", gl.canvas.width, gl.canvas.height);
+    for (const [name, value] of Object.entries(values)) set(name, ...value);
+  }
+
+  // What hides what is behind it: the body, magnets and coils.
+  drawBodies(camera, range) {
+    const { gl } = this;
+    this.begin(camera, this.surface, { range, nearer: [0] });
+    gl.drawElements(gl.TRIANGLES, this.surface.count, gl.UNSIGNED_INT, 0);
+    for (const solid of this.solids) {
+      this.begin(camera, solid, { ...solid.pose(), nearer: [0] });
+      gl.drawArrays(gl.TRIANGLES, 0, solid.count);
+    }
+  }
+
   draw(camera, range, arrowInk) {
     const gl = this.gl;
     const { canvas } = gl;
     gl.viewport(0, 0, canvas.width, canvas.height);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    const begin = ({ program, array }, values) => {
-      gl.useProgram(program);
-      gl.bindVertexArray(array);
-      const set = (name, ...numbers) => {
-        const place = gl.getUniformLocation(program, name);
-        if (numbers.length === 9) gl.uniformMatrix3fv(place, true, numbers);
-        else if (place) gl[`uniform${numbers.length}f`](place, ...numbers);
-      };
-      set("axes", ...camera.axes.flat());
-      set("centre", ...camera.centre);
-      set("span", ...camera.span);
-      set("pixels", canvas.width, canvas.height);
-      for (const [name, value] of Object.entries(values)) set(name, ...value);
-    };
     const drawLines = (wanted) => {
       for (const lines of this.lines) {
         const { width, ink, nearer, shown, behind } = lines.style();
         if (!shown || Boolean(behind) !== wanted) continue;
-        begin(lines, { width: [(width * canvas.width) / canvas.clientWidth], ink, nearer: [nearer] });
+        this.begin(camera, lines, { width: [(width * canvas.width) / canvas.clientWidth], ink, nearer: [nearer] });
         gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, lines.instances);
       }
     };
     gl.disable(gl.DEPTH_TEST);
     drawLines(true);
     gl.enable(gl.DEPTH_TEST);
-    begin(this.surface, { range, nearer: [0] });
-    gl.drawElements(gl.TRIANGLES, this.surface.count, gl.UNSIGNED_INT, 0);
-    for (const solid of this.solids) {
-      begin(solid, { ...solid.pose(), nearer: [0] });
-      gl.drawArrays(gl.TRIANGLES, 0, solid.count);
-    }
+    this.drawBodies(camera, range);
     drawLines(false);
     if (arrowInk && this.arrow.instances) {
-      begin(this.arrow, { ink: arrowInk, nearer: [4e-3] });
+      this.begin(camera, this.arrow, { ink: arrowInk, nearer: [4e-3] });
       gl.drawArraysInstanced(gl.TRIANGLES, 0, this.arrow.count, this.arrow.instances);
     }
   }
