@@ -106,7 +106,7 @@ def _step(path: Path, number: int) -> Step:
 def colour_bar(
     figure: Figure, colours: ScalarMappable, title: str, upright: tuple[float, float] = (0.16, 0.6), more: bool = False
 ) -> None:
-    """A bar on the right of the scene, its quantity above; from `upright[0]`, `upright[1]` high; pointed if there is more."""
+    """A bar on the right of the scene, its quantity above; `upright`: lowest point and height, fractions."""
     bar = figure.colorbar(
         colours, extend="max" if more else "neither", cax=figure.add_axes((0.885, upright[0], 0.022, upright[1]))
     )
