@@ -12,9 +12,11 @@ import time
 
 import numpy as np
 import pytest
+from magnetics.fields.cases import SHAPES
 from PIL import Image
 
 import magshell as ms
+from magshell.magnetics.fields import MagnetField, Motion, Source
 from magshell.output.sketch import paint, tessellate
 
 LENGTH = 10e-3
@@ -169,3 +171,15 @@ def test_the_core_does_not_import_pictures():
     code = "import sys, magshell.mesh, magshell.model.model, magshell.solver.path; print(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
     assert not {"magshell.output.notebook", "magshell.output.sketch", "matplotlib", "PIL"} & set(loaded)
+
+
+def test_magnets_are_drawn_where_they_are():
+    motion = Motion(history=(1.0,), displacement=((0, 0, 0),))
+    magnet = MagnetField([Source(SHAPES["cylinder"], (0.0, 0.0, -30e-3))], motion)
+    path = ms.solve(strip_model(field=magnet))
+    for html in (path._repr_html_(), path.model._repr_html_()):
+        content = re.search(r"base64,([^\"]*)", html)[1]
+        picture = np.asarray(Image.open(io.BytesIO(base64.b64decode(content))).convert("RGB"), dtype=int)
+        red, blue = picture[..., 0] - picture[..., 2] > 90, picture[..., 2] - picture[..., 0] > 90
+        assert min(red.mean(), blue.mean()) > 0.01
+        assert np.nonzero(red)[0].mean() < np.nonzero(blue)[0].mean(), "the north pole is above"

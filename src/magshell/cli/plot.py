@@ -13,6 +13,7 @@ from magshell.cli.work import bar
 from magshell.errors import InputError
 
 if TYPE_CHECKING:
+    from magshell.output.field_plane import FieldPlane
     from magshell.solver.path import Path
     from magshell.solver.step import Step
 
@@ -26,6 +27,7 @@ examples:
   magshell plot results --over field.angle           curves over the angle of a field that turns
   magshell plot results --animate shape.gif          also the path as an animation
   magshell plot results --animate shape.gif --seconds 8 --smooth --camera 1,-1,0.5
+  magshell plot results --field-plane x2=0           also the field on this plane, as arrows coloured by |B|
   magshell plot results --animate shape.mp4          as a video: pip install 'magshell[video]'
 
 Without --steps the shapes are spread evenly along the path. All of them are seen by one camera, in one scale of colours
@@ -33,6 +35,8 @@ and true to scale. OUTPUT is a name or symbol of the results: u3, u, energy, rot
 NAME is field (|B|, mT), load_factor, or an amount of the field that varies: field.angle, magnet.angle, magnet.d3, ...
 Without --over it is |B| of a uniform field, the angle of what turns, or else the load factor.
 Every frame of an animation is a converged step, seen for as long as the path is to the next one; the last is held.
+--field-plane has an axis and a coordinate with its unit: x2=0, 'x3=5 mm'. It is for the pictures of steps. The field is
+that of field, magnets and coils; points where it is zero or not known, as inside magnets, have no arrow.
 --smooth interpolates linearly between the steps.
 A run that was interrupted, or that is still going on, is drawn as far as it got."""
 
@@ -48,6 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seconds", metavar="S", type=float, default=4.0, help="length of the animation (default: 4)")
     parser.add_argument("--smooth", action="store_true", help="also frames between the steps, linearly interpolated")
     parser.add_argument("--camera", metavar="X,Y,Z", help="direction from the body to the camera, such as 0,-1,0")
+    parser.add_argument("--field-plane", metavar="PLANE", help="draw the field on a plane: x2=0, 'x3=5 mm', …")
     parser.add_argument("--out", metavar="DIR", help="folder of the pictures (default: the results folder)")
 
 
@@ -65,6 +70,7 @@ def run(given: argparse.Namespace) -> int:
 
     find(given.color)
     camera = _camera(given.camera)
+    plane = _plane(given.field_plane)
     if given.animate:
         require_writer(given.animate)
     path = read(given.directory).path
@@ -83,7 +89,7 @@ def run(given: argparse.Namespace) -> int:
     say(out, f"picture: {directory / 'curve.png'}")
     try:
         with bar(out, "drawing shapes") as advance:
-            files = draw_steps(path, steps, directory, given.color, advance, camera)
+            files = draw_steps(path, steps, directory, given.color, advance, camera, plane)
         for file in files:
             say(out, f"picture: {file}")
         if given.animate:
@@ -108,6 +114,18 @@ def _camera(text: str | None) -> list[float] | None:
     except ValueError:
         raise InputError(f"--camera {text}: write three numbers, not all 0, such as 1,-1,0.5") from None
     return direction
+
+
+def _plane(text: str | None) -> FieldPlane | None:
+    """The plane that a user asks for."""
+    from magshell.output.field_plane import field_plane
+
+    if text is None:
+        return None
+    try:
+        return field_plane(text)
+    except InputError as error:
+        raise InputError(f"--field-plane: {error}") from None
 
 
 def _steps(path: Path, text: str | None) -> list[Step]:

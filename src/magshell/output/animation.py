@@ -26,12 +26,13 @@ from magshell.evaluation.outputs import find
 from magshell.files import write_atomically
 from magshell.mesh.geometry import unit
 from magshell.output.copies import between
+from magshell.output.field_plane import FieldArrows, FieldPlane
 from magshell.output.labels import bar_title
 from magshell.output.scene import Camera, axes_from, best_axes, darkroom, deformed, field_arrow, fit, lettered
 from magshell.output.shape import INCHES, SCENE, colour_bar, colour_scale, field_title, shown_values, triad
 from magshell.output.skin import Placed, Skin, skin_of
+from magshell.output.sources import Plane, pieces
 from magshell.output.sources import extent as sources_extent
-from magshell.output.sources import pieces
 from magshell.output.style import ACCENT, DPI, INK, said
 from magshell.output.tessellation import Surface
 
@@ -50,6 +51,8 @@ LONGEST = 120.0
 """Of a film, s."""
 RATE = 25
 """Pictures in a second of a video."""
+UPPER, LOWER = (0.52, 0.33), (0.06, 0.33)
+"""Bottom and height of two colour bars, fractions of the picture."""
 VIDEO = (".mp4", ".mov", ".m4v")
 
 
@@ -102,7 +105,12 @@ def _between(path: Path, duration: float) -> list[Frame]:
 
 @contextmanager
 def film(
-    path: Path, steps: Sequence[Step], color: str, dpi: int = DPI, camera: ArrayLike | None = None
+    path: Path,
+    steps: Sequence[Step],
+    color: str,
+    dpi: int = DPI,
+    camera: ArrayLike | None = None,
+    plane: FieldPlane | None = None,
 ) -> Iterator[Callable[[Frame], Image]]:
     """Draw steps by one camera, which sees all of them, with one plotter.
 
@@ -117,6 +125,8 @@ def film(
         Size of the pictures: `magshell.output.shape.INCHES` times this, even numbers.
     camera : (3,) array_like, optional
         Direction from the body to the camera; by default the best of a few.
+    plane : FieldPlane, optional
+        On which the field of sources and grids is drawn as arrows.
 
     Yields
     ------
@@ -126,7 +136,7 @@ def film(
     Raises
     ------
     InputError
-        No such output, or a camera that is no direction.
+        No such output, a camera that is no direction, or no field on the plane.
     RenderingUnavailable
         This machine cannot draw without a screen; the message says what to install.
     """
@@ -139,8 +149,9 @@ def film(
     values = {step.number: each for step, each in zip(steps, shown, strict=True)}
     colours = ScalarMappable(*colour_scale(np.array([f(v) for v in values.values() for f in (np.min, np.max)])))
     shape = round(dpi * INCHES[0] * SCENE[2]), round(dpi * INCHES[1] * SCENE[3])
-    seen, arrow_of = _look(path, steps, skin, shape, camera)
-    front = _front(seen, colours, bar_title(output, component), dpi)
+    seen, arrow_of, sheet = _look(path, steps, skin, shape, camera, plane)
+    on_plane = FieldArrows(path, steps, sheet) if sheet is not None else None
+    front = _front(seen, colours, bar_title(output, component), dpi, on_plane)
 
     @lru_cache(maxsize=2)
     def placed(number: int) -> Placed:
@@ -165,7 +176,15 @@ def film(
             arrow = arrow_of(field)
             rgb = colours.to_rgba(shown, bytes=True)[:, :3]
             sources = pieces(path.model.field, drives)
-            scene = expose(deformed(path.model.shell, body, rgb, arrow, sources, seen))
+            places = [deformed(path.model.shell, body, rgb, arrow, sources, seen)]
+            if on_plane is not None:
+                places.append(on_plane.at(drives))
+
+            def place(plotter: Any, places: Sequence[Callable[[Any], None]] = tuple(places)) -> None:
+                for each in places:
+                    each(plotter)
+
+            scene = expose(place)
             whole = images.new("RGBA", front.size, "white")
             whole.alpha_composite(images.fromarray(scene), (0, front.height - shape[1]))
             whole.alpha_composite(front)
@@ -191,8 +210,9 @@ def draw_steps(
     color: str = "u3",
     advance: Callable[[float], None] = lambda share: None,
     camera: ArrayLike | None = None,
+    plane: FieldPlane | None = None,
 ) -> list[pathlib.Path]:
-    """Draw `shape-NNNN.png` for steps of a path, all by one camera and in one scale of colours.
+    """Draw `shape-NNNN.png` for steps of a path, all by one camera, in one scale of colours.
 
     Raises
     ------
@@ -202,7 +222,7 @@ def draw_steps(
         The disk refuses; the message names the file.
     """
     files = []
-    with film(path, steps, color, camera=camera) as picture:
+    with film(path, steps, color, camera=camera, plane=plane) as picture:
         for number, step in enumerate(steps, start=1):
             content = io.BytesIO()
             picture(Frame(step, 0.0)).save(content, format="png", optimize=True, pnginfo=said())
@@ -321,14 +341,22 @@ def _video(pictures: Sequence[Image], seconds: Sequence[float], suffix: str) -> 
 
 
 def _look(
-    path: Path, steps: Sequence[Step], skin: Skin, shape: tuple[int, int], view: ArrayLike | None
-) -> tuple[Camera, Callable[[FloatArray], FloatArray | None]]:
-    """The camera of all steps, and the arrow of a field, as long as the field is strong."""
+    path: Path,
+    steps: Sequence[Step],
+    skin: Skin,
+    shape: tuple[int, int],
+    view: ArrayLike | None,
+    plane: FieldPlane | None,
+) -> tuple[Camera, Callable[[FloatArray], FloatArray | None], Plane | None]:
+    """The camera of all steps, the arrow of a field, as long as the field is strong, and the part of a plane drawn."""
     mesh = path.discretisation.mesh
     places = [skin.extent(converged(path.discretisation, step)) for step in steps]
     shell = np.concatenate([mesh.points, *places])
     around = (sources_extent(pieces(path.model.field, step.drives), shell) for step in steps)
     extent = np.concatenate([shell, *around])
+    sheet = plane.over(extent) if plane is not None else None
+    if sheet is not None:
+        extent = np.concatenate([extent, sheet.grid()])
     ends = np.vstack([mesh.points, mesh.points + steps[-1].state.displacement(len(mesh.points))])
     axes = best_axes(ends) if view is None else axes_from(view)
     strongest = max(float(np.linalg.norm(step.flux_density)) for step in steps)
@@ -342,7 +370,7 @@ def _look(
 
     arrows = [arrow for step in steps if (arrow := arrow_of(step.flux_density)) is not None]
     letters = [lettered(arrow, axes) for arrow in arrows]
-    return fit(np.concatenate([extent, *letters]), axes, shape[0] / shape[1]), arrow_of
+    return fit(np.concatenate([extent, *letters]), axes, shape[0] / shape[1]), arrow_of, sheet
 
 
 def _mixed(one: Placed, other: Placed, share: float) -> Placed:
@@ -360,15 +388,19 @@ def _mixed(one: Placed, other: Placed, share: float) -> Placed:
     return Placed(Surface(points, unit(normals), one.surface.triangles), inner, outer, copies)
 
 
-def _front(camera: Camera, colours: Any, title: str, dpi: int) -> Image:
-    """What is the same in all pictures: colour bar and directions, on nothing."""
+def _front(camera: Camera, colours: Any, title: str, dpi: int, on_plane: FieldArrows | None) -> Image:
+    """What is the same in all pictures: colour bars and directions, on nothing."""
     from matplotlib.figure import Figure
     from PIL import Image as images
 
     figure = Figure(figsize=INCHES, dpi=dpi)
     axes = figure.add_axes(SCENE)
     axes.set_axis_off()
-    colour_bar(figure, colours, title)
+    if on_plane is None:
+        colour_bar(figure, colours, title)
+    else:
+        colour_bar(figure, colours, title, UPPER)
+        colour_bar(figure, on_plane.colours, "$|B|$ (mT)", LOWER, on_plane.more)
     triad(axes, camera.axes)
     content = io.BytesIO()
     figure.savefig(content, format="png", transparent=True)

@@ -21,6 +21,8 @@ from magshell.output.abscissa import abscissa
 from magshell.output.curve import curves, dress
 from magshell.output.scene import best_axes
 from magshell.output.sketch import Lines, paint, tessellate, triad
+from magshell.output.sources import Piece, pieces
+from magshell.output.sources import extent as sources_extent
 from magshell.output.style import ACCENT, COLOURS, GREY, INK, compact_png
 from magshell.units import FLUX_DENSITY, LENGTH, STRESS, show
 
@@ -240,8 +242,10 @@ def _mesh_figure(mesh: Mesh, model: Model | None = None) -> Figure:
     nodes = [(name, members, next(palette)) for name, members in list(mesh.node_groups.items())[:MOST_NAMES]]
     handles += [_handle(name, colour, "o") for name, _, colour in nodes]
 
-    figure, axes = _figure(mesh, np.zeros_like(mesh.points), legend=bool(handles))
-    view = paint(axes, mesh, tessellation, np.zeros_like(mesh.points), tessellation.on_elements(colours), lines)
+    sources = pieces(model.field, model.field.ends(len(model.stages))[0]) if model is not None else []
+    still = np.zeros_like(mesh.points)
+    figure, axes = _figure(mesh, sources, legend=bool(handles))
+    view = paint(axes, mesh, tessellation, still, tessellation.on_elements(colours), lines, sources)
     for _, members, colour in nodes:
         dots = mesh.points[members] @ view[:2].T
         axes.plot(dots[:, 0], dots[:, 1], "o", color=colour, markersize=4.5, markeredgecolor="white", zorder=4)
@@ -300,19 +304,23 @@ def _magnetism(axes: Axes, model: Model, view: FloatArray) -> list[Any]:
     return handles
 
 
-def _figure(mesh: Mesh, displacement: FloatArray, legend: bool) -> tuple[Figure, Axes]:
+def _figure(mesh: Mesh, sources: Sequence[Piece], legend: bool) -> tuple[Figure, Axes]:
     """A figure for one body, as high as its view asks for."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(7.0 if legend else 5.6, _height(mesh, displacement, 5.2)), dpi=DPI, facecolor="white")
+    figure = Figure(
+        figsize=(7.0 if legend else 5.6, _height(mesh, np.zeros_like(mesh.points), 5.2, sources)),
+        dpi=DPI,
+        facecolor="white",
+    )
     figure.set_layout_engine("constrained")
     return figure, figure.subplots()
 
 
-def _height(mesh: Mesh, displacement: FloatArray, width: float) -> float:
+def _height(mesh: Mesh, displacement: FloatArray, width: float, sources: Sequence[Piece] = ()) -> float:
     """Inches for a picture of this width, within what fits a page."""
     extent = np.vstack([mesh.points, mesh.points + displacement])
-    spread = np.ptp(extent @ best_axes(extent)[:2].T, axis=0)
+    spread = np.ptp(np.vstack([extent, sources_extent(sources, extent)]) @ best_axes(extent)[:2].T, axis=0)
     return float(np.clip(width * spread[1] / max(spread[0], 1e-30) + 0.35, 1.9, 4.2))
 
 
@@ -321,7 +329,8 @@ def _path_figure(path: Path) -> Figure:
 
     mesh, last = path.model.shell.mesh, path.steps[-1]
     with_curve = len(path.steps) > 1
-    height = max(_height(mesh, last.state.displacement(len(mesh.points)), 4.2), 3.0)
+    moved, sources = last.state.displacement(len(mesh.points)), pieces(path.model.field, last.drives)
+    height = max(_height(mesh, moved, 4.2, sources), 3.0)
     figure = Figure(figsize=(9.4 if with_curve else 5.6, height), dpi=DPI, facecolor="white")
     figure.set_layout_engine("constrained", wspace=0.06)
     if with_curve:
@@ -329,9 +338,9 @@ def _path_figure(path: Path) -> Figure:
         _chart(chart, path)
     else:
         body = figure.subplots()
-    size = 1e3 * np.linalg.norm(last.state.displacement(len(mesh.points)), axis=1)
+    size = 1e3 * np.linalg.norm(moved, axis=1)
     tessellation = tessellate(mesh)
-    scale, view = _paint_size(body, mesh, last.state.displacement(len(mesh.points)), tessellation.at_points(size))
+    scale, view = _paint_size(body, mesh, moved, tessellation.at_points(size), sources)
     triad(body, view)
     bar = figure.colorbar(
         scale,
@@ -343,7 +352,9 @@ def _path_figure(path: Path) -> Figure:
     return figure
 
 
-def _paint_size(axes: Axes, mesh: Mesh, displacement: FloatArray, values: FloatArray) -> tuple[Any, FloatArray]:
+def _paint_size(
+    axes: Axes, mesh: Mesh, displacement: FloatArray, values: FloatArray, sources: Sequence[Piece] = ()
+) -> tuple[Any, FloatArray]:
     """The deformed body coloured by values at the points of the tessellation; the scale of the colours and the view."""
     from matplotlib import colormaps
     from matplotlib.cm import ScalarMappable
@@ -351,7 +362,7 @@ def _paint_size(axes: Axes, mesh: Mesh, displacement: FloatArray, values: FloatA
 
     largest = max(float(values.max()), NOTHING * 1e3 * mesh.size)
     scale = ScalarMappable(Normalize(0.0, largest), colormaps["viridis"])
-    view = paint(axes, mesh, tessellate(mesh), displacement, np.asarray(scale.to_rgba(values))[:, :3])
+    view = paint(axes, mesh, tessellate(mesh), displacement, np.asarray(scale.to_rgba(values))[:, :3], (), sources)
     return scale, view
 
 

@@ -103,9 +103,13 @@ def _step(path: Path, number: int) -> Step:
     return path.steps[number]
 
 
-def colour_bar(figure: Figure, colours: ScalarMappable, title: str) -> None:
-    """The bar on the right of the scene, its quantity above."""
-    bar = figure.colorbar(colours, cax=figure.add_axes((0.885, 0.16, 0.022, 0.6)))
+def colour_bar(
+    figure: Figure, colours: ScalarMappable, title: str, upright: tuple[float, float] = (0.16, 0.6), more: bool = False
+) -> None:
+    """A bar on the right of the scene, its quantity above; `upright`: lowest point and height, fractions."""
+    bar = figure.colorbar(
+        colours, extend="max" if more else "neither", cax=figure.add_axes((0.885, upright[0], 0.022, upright[1]))
+    )
     bar.outline.set_visible(False)
     bar.ax.tick_params(**TICKS)
     bar.ax.set_title(title, pad=14, loc="left", **TEXT)

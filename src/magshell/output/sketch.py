@@ -15,6 +15,8 @@ import numpy as np
 from magshell.arrays import AnyArray, FloatArray, IntArray
 from magshell.output.joints import outline_of
 from magshell.output.scene import best_axes
+from magshell.output.sources import Piece
+from magshell.output.sources import extent as sources_extent
 from magshell.output.style import GREY, INK, PALE
 from magshell.output.tessellation import Tessellation, element_edges
 
@@ -51,6 +53,7 @@ def paint(
     displacement: FloatArray,
     colours: FloatArray,
     lines: Sequence[Lines] = (),
+    sources: Sequence[Piece] = (),
 ) -> FloatArray:
     """Paint the deformed surface.
 
@@ -65,6 +68,8 @@ def paint(
     colours : FloatArray, shape (points of the tessellation, 3)
         Red, green, blue, 0 to 1.
     lines : sequence of Lines
+    sources : sequence of Piece
+        Magnets and coils.
 
     Returns
     -------
@@ -79,10 +84,11 @@ def paint(
     drawn = [Lines(edges, INK, 0.35), Lines(outline, INK, 0.8), *lines]
     if np.any(displacement):
         _outline(axes, tessellation.edges(mesh.points, outline) @ view.T)
-    _polygons(axes, surface.points @ view.T, surface.triangles, colours, [
+    points, triangles, colours = _with_sources(surface.points, surface.triangles, colours, sources)
+    _polygons(axes, points @ view.T, triangles, colours, [
         (tessellation.edges(mesh.points + displacement, one.edges) @ view.T, one.colour, one.width) for one in drawn
     ])  # fmt: skip
-    seen = extent @ view[:2].T
+    seen = np.vstack([extent, sources_extent(sources, extent)]) @ view[:2].T
     low, high = seen.min(axis=0), seen.max(axis=0)
     margin = 0.03 * float(np.linalg.norm(high - low))
     axes.set_xlim(low[0] - margin, high[0] + margin)
@@ -102,6 +108,21 @@ def triad(axes: Axes, view: FloatArray) -> None:
         axes.annotate("", tuple(origin + tip), tuple(origin), arrowprops={**line, "shrinkA": 0, "shrinkB": 0}, **place)
         beyond = tuple(origin + tip * (1 + 7.0 / max(float(np.linalg.norm(tip)), 7.0)))
         axes.annotate(f"$X_{i + 1}$", beyond, beyond, ha="center", va="center", fontsize=8, color=GREY, **place)
+
+
+def _with_sources(
+    points: FloatArray, triangles: IntArray, colours: FloatArray, sources: Sequence[Piece]
+) -> tuple[FloatArray, IntArray, FloatArray]:
+    """Points, triangles and colours with those of magnets and coils behind them."""
+    from matplotlib.colors import to_rgb
+
+    for piece in sources:
+        surface = piece.surface.triangulate()
+        corners = np.asarray(surface.faces, dtype=triangles.dtype).reshape(-1, 4)[:, 1:]
+        triangles = np.concatenate([triangles, corners + len(points)])
+        points = np.concatenate([points, np.asarray(surface.points, dtype=float)])
+        colours = np.concatenate([colours, np.tile(to_rgb(piece.colour), (surface.n_points, 1))])
+    return points, triangles, colours
 
 
 def _outline(axes: Axes, curves: FloatArray) -> None:

@@ -133,8 +133,20 @@ class Plane:
         return np.asarray(np.asarray(self.corner, dtype=float) + shares @ self.sides)
 
 
+def outside(field: Field, amounts: FloatArray, points: FloatArray) -> FloatArray:
+    """B (n, 3) at points (n, 3), T; NaN inside magnets and where the field is not known."""
+    B = known(field, amounts, points)
+    for part, own in field.parts(amounts):
+        if isinstance(part, MagnetField):
+            for source in part.now(own):
+                B[source.shape.inside(source.local(points))] = np.nan
+    return B
+
+
 def arrows(field: Field, amounts: FloatArray, plane: Plane) -> Any:
     """Arrows of equal length along B at the points of a plane, with the point array `B` (its magnitude, T).
+
+    There is none where the field is zero or not known, nor inside magnets.
 
     Returns
     -------
@@ -143,8 +155,11 @@ def arrows(field: Field, amounts: FloatArray, plane: Plane) -> Any:
     import pyvista
 
     points = plane.grid()
-    B = known(field, amounts, points)
-    points, B = points[np.isfinite(B[:, 0])], B[np.isfinite(B[:, 0])]
+    B = outside(field, amounts, points)
+    shown = np.linalg.norm(B, axis=1) > 0.0
+    if not shown.any():
+        return pyvista.PolyData()
+    points, B = points[shown], B[shown]
     cloud = pyvista.PolyData(points)
     cloud["direction"], cloud["B"] = unit(B), np.linalg.norm(B, axis=1)
     lengths = np.linalg.norm(plane.sides, axis=1)
