@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import magshell as ms
 from magshell.evaluation.converged import converged
 
 # Of the rigid plate: surface charges and a volume integral agree to 3e-7.
@@ -12,6 +13,8 @@ PULL = 168.6582915e-3
 # Tip (X1, X3) of the inextensible strip with its clamp at (-20, 0) mm, m; force N and moment N m of its clamp.
 TIP = (-13.7554e-3, 16.9090e-3)
 FORCE, MOMENT = (-0.0720234e-3, 0.0, 0.0922167e-3), 1.51885e-6
+
+THIN = {"shell.thickness": "0.125 mm", "material.youngs_modulus": "19.2 MPa", "remanence[0].vector": "400 mT"}
 
 
 def test_the_clamp_of_the_plate_holds_the_pull_of_the_magnet(solved) -> None:
@@ -36,6 +39,18 @@ def test_the_strip_over_the_magnet(solved) -> None:
     assert clamp.force == pytest.approx(FORCE, abs=5e-3 * np.linalg.norm(FORCE))
     assert clamp.moment[1] == pytest.approx(MOMENT, rel=5e-3)
     assert max(step.balance.force_imbalance, step.balance.moment_imbalance) < 1e-8
+
+
+def test_a_strip_a_quarter_as_thick_and_as_stiff_comes_nearer_to_it() -> None:
+    """With the same E I and A B_rem, so that it stretches and shears a sixteenth as much."""
+    problem = ms.problem.load("strip-over-magnet", THIN)
+    path = ms.solve(problem.model, problem.settings)
+    step, node = path.steps[-1], path.model.probe_nodes["tip"]
+    x = path.model.shell.mesh.points[node] + step.state.u[node]
+    assert np.abs(x[[0, 2]] - TIP).max() < 0.4e-3 * 20e-3
+    (clamp,) = converged(path.discretisation, step).reactions
+    assert clamp.force == pytest.approx(FORCE, abs=1e-3 * np.linalg.norm(FORCE))
+    assert clamp.moment[1] == pytest.approx(MOMENT, rel=1e-3)
 
 
 def test_the_flower_closes_and_opens(solved) -> None:
