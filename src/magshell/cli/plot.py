@@ -61,8 +61,9 @@ def run(given: argparse.Namespace) -> int:
     from magshell.evaluation.outputs import find
     from magshell.files import refuse_to_replace
     from magshell.output.abscissa import abscissa
-    from magshell.output.animation import animate, draw_steps, require_writer
+    from magshell.output.animation import animate, draw_steps
     from magshell.output.curve import draw_curve
+    from magshell.output.film_files import require_writer
     from magshell.output.rendering import RenderingUnavailable
     from magshell.output.series import chosen
     from magshell.output.style import is_ours
