@@ -12,7 +12,7 @@ class Pictures:
     """Shows the pictures that an example has put into variables since the block before."""
 
     def __init__(self) -> None:
-        self._shown: set[int] = set()
+        self._shown: list[Image] = []  # themselves, as the id of one that is gone may be that of a new one
 
     def __repr__(self) -> str:
         return "Pictures()"
@@ -21,8 +21,8 @@ class Pictures:
         """Save them where the page looks for them, and say so in its source."""
         files = []
         for value in list(block_vars["example_globals"].values()):
-            if isinstance(value, Image) and id(value) not in self._shown:
-                self._shown.add(id(value))
+            if isinstance(value, Image) and not any(value is one for one in self._shown):
+                self._shown.append(value)
                 files.append(next(block_vars["image_path_iterator"]))
                 value.save(files[-1])
         return figure_rst(files, gallery_conf["src_dir"])
