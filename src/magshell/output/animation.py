@@ -177,7 +177,7 @@ def film(
             if on_plane is not None:
                 places.append(on_plane.at(drives))
 
-            def place(plotter: Any, places: Sequence[Callable[[Any], None]] = tuple(places)) -> None:
+            def place(plotter: Any) -> None:
                 for each in places:
                     each(plotter)
 

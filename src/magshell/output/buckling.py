@@ -12,7 +12,7 @@ import numpy as np
 
 from magshell.equations.instant import Increment
 from magshell.files import csv_line, first_line, refuse_somebodys, write_atomically
-from magshell.output.critical import write_mode
+from magshell.output.critical import field_cells, write_mode
 from magshell.output.rendering import attempted
 from magshell.output.shape import draw_shape
 from magshell.solver.step import Step
@@ -68,9 +68,7 @@ def write_buckling(buckling: Buckling, directory: str | os.PathLike[str]) -> lis
     for mode in buckling.modes:
         name = f"buckling/mode-{mode.number:02d}.vtu"
         write_mode(folder / name, buckling.path.discretisation, mode)
-        course = buckling.path.model.course(mode.stage)
-        field = course.reported(mode.load_factor, mode.flux_density).tolist()
-        numbers = [repr(float(mode.load_factor)), *("" if np.isnan(B) else repr(B) for B in field)]
+        numbers = [repr(float(mode.load_factor)), *field_cells(buckling.path.model, mode)]
         rows.append(csv_line([str(mode.number), *numbers, name, repr(float(mode.strain)), repr(float(mode.rotation))]))
     write_atomically(folder / TABLE, "".join(rows).encode())
     return [

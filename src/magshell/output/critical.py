@@ -16,6 +16,7 @@ from magshell.solver.events import Observer
 
 if TYPE_CHECKING:
     from magshell.equations.discretisation import Discretisation
+    from magshell.model.model import Model
     from magshell.solver.buckling import BucklingMode
     from magshell.solver.critical import CriticalPoint
     from magshell.solver.settings import Settings
@@ -61,10 +62,8 @@ class CriticalWriter(Observer):
         write_mode(self.file.parent / name, self._discretisation, point)
         if not self.file.exists():
             write_atomically(self.file, csv_line(HEADING).encode())
-        course = self._discretisation.model.course(point.stage)
-        field = course.reported(point.load_factor, point.flux_density).tolist()
-        told = ["" if np.isnan(B) else repr(B) for B in field]
-        numbers = [repr(float(point.load_factor)), *told, repr(float(point.arc_length))]
+        field = field_cells(self._discretisation.model, point)
+        numbers = [repr(float(point.load_factor)), *field, repr(float(point.arc_length))]
         pivots = ["" if count is None else str(count) for count in point.negative_pivots]
         append_line(self.file, csv_line([str(point.number), point.kind, str(point.stage + 1), *numbers, *pivots, name]))
 
@@ -77,3 +76,9 @@ def write_mode(file: pathlib.Path, discretisation: Discretisation, point: Critic
     for array, field in (("mode", "u"), ("mode_director", "w"), ("mode_rotation", "omega")):
         content.point_data.set_array(np.ascontiguousarray(mode[:, COLUMNS[field]]), array)
     write_atomically(file, vtu(content))
+
+
+def field_cells(model: Model, point: CriticalPoint | BucklingMode) -> list[str]:
+    """B1, B2, B3 as cells of a table, T; empty where the field is not known at the shell's centre."""
+    field = model.course(point.stage).reported(point.load_factor, point.flux_density)
+    return ["" if np.isnan(B) else repr(B) for B in field.tolist()]

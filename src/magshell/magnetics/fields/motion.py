@@ -165,8 +165,8 @@ class MovingField(Field):
 
     def placement(self, amounts: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Rotation R (3, 3) and shift s (3,) of the frame: x = R y + s."""
-        turn, centre = self._turn(amounts[4]), self._centre
-        return turn, centre + amounts[1:4] - turn @ centre
+        turn = self._turn(amounts[4])
+        return turn, self.pivot(amounts) - turn @ self._centre
 
     def pivot(self, amounts: FloatArray) -> FloatArray:
         """The point (3,) of the axis of rotation that moves with the displacement, m."""
